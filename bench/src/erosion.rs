@@ -17,12 +17,12 @@ use crate::{filters, sizes};
 
 const CELL: f64 = 60.0;
 
-/// The Pythons of the peers, each in the environment variable of its name: `cargo xtask bench` installs them and sets
-/// these.
+/// The peers, each with the environment variable that has the path of its Python. `cargo xtask bench` installs the
+/// peers and sets the variables.
 const PEERS: [(&str, &str); 3] =
     [("richdem", "OROGEN_RICHDEM"), ("fastscapelib", "OROGEN_FASTSCAPELIB"), ("matplotlib", "OROGEN_MATPLOTLIB")];
 
-/// A case: its name, side, our seconds, the peer and its parts that do the same work, and the required ratio.
+/// A case: its name, side, our time in seconds, the peer and its parts that do the same work, and the required ratio.
 struct Case {
     name: &'static str,
     side: usize,
@@ -74,7 +74,7 @@ pub fn run(options: &Options) -> Result<Value, String> {
     let folder = std::env::temp_dir().join(format!("orogen-bench-{}", std::process::id()));
     std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let rows = measured(options, &folder);
-    // Only files made here, in a folder of our own, are removed.
+    // The folder has only files that were made here.
     let _ = std::fs::remove_dir_all(&folder);
     Ok(json!({ "area": "erosion", "simd": orogen_simd::Level::current().name(), "threads": 1, "rows": rows? }))
 }

@@ -55,7 +55,8 @@ const CASES: &[Case] = &[
     },
 ];
 
-/// The filters over terrain that `ground` makes for a side; each on one thread, then on two compared with one.
+/// Measures the filters over terrain that `ground` makes for a side, each on one thread, then on two threads compared
+/// with one.
 pub fn figures(options: &Options, ground: impl Fn(usize) -> Result<Grid, String>) -> Result<Vec<Figure>, String> {
     let mut figures = Vec::new();
     let pools = [1, 2].map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build());

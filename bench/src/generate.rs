@@ -47,7 +47,7 @@ pub fn run(options: &Options) -> Result<Value, String> {
             "target": MOST, "met": seconds <= MOST,
         }));
     }
-    // Only files made here, in a folder of our own, are removed.
+    // The folder has only files that were made here.
     let _ = std::fs::remove_dir_all(&out);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     Ok(json!({ "area": "generate", "simd": orogen_simd::Level::current().name(), "threads": threads, "rows": rows }))

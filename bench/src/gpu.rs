@@ -1,5 +1,5 @@
-//! Area `gpu`: terrain and pictures on a graphics card, beside what its memory allows and beside the processor. Wall
-//! time. On a software adapter nothing has a target: it shares the processor.
+//! Area `gpu`: terrain and pictures on a graphics card, compared with the bandwidth of its memory and with the
+//! processor. Wall time. On a software adapter there are no targets, because it shares the processor.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -15,13 +15,13 @@ use crate::measure::median;
 use crate::options::Options;
 use crate::world::figure::{Figure, Target};
 
-/// Fields and a filter that a slider moves, over 1024 x 1024 samples, in seconds.
+/// Maximum time of a preview after a parameter of fields and a filter changes, over 1024 x 1024 samples, in seconds.
 const PREVIEW: f64 = 0.005;
 
-/// A picture of 1920 x 1080 pixels, in seconds.
+/// Maximum time of a picture of 1920 x 1080 pixels, in seconds.
 const PICTURE: f64 = 0.050;
 
-/// The card, the sessions with and without it, and how often is measured.
+/// The card, the sessions with and without it, and the number of timings.
 struct Bench {
     gpu: Gpu,
     card: Session,
@@ -103,7 +103,7 @@ const FBM: &str = "orogen = 1\n[nodes.land]\nop = \"fbm\"\nwavelength = 1000\n[o
 const PIPES: &str = "orogen = 1\n[nodes.hills]\nop = \"fbm\"\nwavelength = 5000\n[nodes.heights]\nop = \"multiply\"\na = \"hills\"\nb = 800\n\
     [nodes.land]\nop = \"pipes\"\nsource = \"heights\"\niterations = 100\n[outputs]\nheight = \"land\"\n";
 
-/// What is measured of the preset `alpine`.
+/// A measured part of the preset `alpine`.
 #[derive(Clone, Copy)]
 enum Part {
     /// Its two solves of `stream-power`.
@@ -112,7 +112,7 @@ enum Part {
     Levels,
 }
 
-/// Makes the heights of a recipe with another seed each time: grids of filters are kept.
+/// Makes the heights of a recipe. Each call needs another seed, because grids of filters are kept.
 fn window(session: &Session, recipe: &str, side: usize, seed: u64) -> Result<(), String> {
     let mut recipe = Recipe::parse(recipe, "bench").map_err(|e| e.to_string())?;
     recipe.world.seed = seed;
@@ -152,7 +152,7 @@ impl Bench {
         Ok(times)
     }
 
-    /// The seconds of a part of the preset `alpine` in a session, with another parameter each time.
+    /// The seconds of a part of the preset `alpine` in a session; a parameter changes before each timing.
     fn alpine(&self, part: Part, session: &Session) -> Result<f64, String> {
         let preset = presets::find("alpine").ok_or("no such preset")?;
         let mut times = Vec::new();
@@ -171,7 +171,7 @@ impl Bench {
                 }),
             }
             let world = session.open(recipe).map_err(|e| e.to_string())?;
-            // The rivers that levels begin with are not measured.
+            // The rivers from which the levels start are not measured.
             if let Part::Levels = part {
                 world.window("valleys", &Window::new(1, 1, 480.0)).map_err(|e| e.to_string())?;
             }

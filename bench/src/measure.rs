@@ -87,7 +87,7 @@ pub const PLAIN: f32 = 0.123;
 fn check(name: &str, buffer: &[f32], samples: usize) -> Result<(), String> {
     let (low, high) = buffer.iter().fold((f32::MAX, f32::MIN), |(l, h), &v| (l.min(v), h.max(v)));
     let finite = buffer.iter().all(|v| v.is_finite());
-    // The plain fill writes one value; it is recognised by that value.
+    // The plain fill writes one value; it is recognized by that value.
     if buffer.len() == samples && finite && (high - low > 0.01 || low == PLAIN) {
         return Ok(());
     }

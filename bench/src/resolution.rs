@@ -6,14 +6,15 @@ use serde_json::{Value, json};
 
 use crate::options::Options;
 
-/// Ratios of the cells to the world's own.
+/// Ratios of the cells to the world's own cell.
 const RATIOS: [usize; 3] = [2, 4, 8];
 
 /// Border in large cells that is excluded: the interpolation has no samples beyond it.
 const BORDER: usize = 2;
 
-/// Cells along a side from which on only a part of a world is compared, and those of the part.
+/// Number of cells along a side above which only a part of a world is compared.
 const LARGEST: usize = 8192;
+/// Number of cells along a side of that part.
 const PART: usize = 1024;
 
 /// Measures every preset, or those selected.
@@ -31,7 +32,7 @@ fn measure(name: &str, world: &World) -> Result<Vec<Value>, String> {
     let spec = world.recipe().world;
     let coarsest = RATIOS.iter().copied().max().unwrap_or(1);
     let cells = |length: f64| (length / spec.cell).floor() as usize / coarsest * coarsest;
-    // Of an unbounded world, the default window; of a very large one, its middle.
+    // The default window of an unbounded world; the middle of a very large one.
     let [width, height] = spec.size.map_or([PART; 2], |size| size.map(cells));
     let part =
         |cells: usize| if cells > LARGEST { ((cells - PART) / 2 / coarsest * coarsest, PART) } else { (0, cells) };

@@ -26,7 +26,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// The row as JSON. Without a rate of ours a target is not met.
+    /// The row as JSON. A target is not met if there is no rate of ours.
     pub fn json(&self) -> Value {
         let ratio = self.ours.zip(self.peer).map(|(ours, (_, theirs))| ours / theirs);
         let met = self.target.map(|target| {

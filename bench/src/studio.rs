@@ -18,8 +18,8 @@ use crate::measure::median;
 use crate::options::Options;
 use crate::world::figure::{Figure, Target};
 
-/// A preset, the text of a parameter in it and what varies there, and the maximum times of the first and of the finest
-/// picture in seconds.
+/// A preset, the text of a parameter in it, the text that varies there, and the maximum times to the first and to the
+/// finest picture, in seconds.
 const CASES: [(&str, &str, &str, [f64; 2]); 2] = [
     ("classic", "wavelength = 1024.0", "wavelength = ", [0.060, 0.5]),
     ("alpine", "default = 0.7", "default = ", [0.150, 3.5]),
@@ -28,7 +28,7 @@ const CASES: [(&str, &str, &str, [f64; 2]); 2] = [
 /// Samples along a side of the finest picture.
 const FINEST: usize = 1024;
 
-/// The longest wait for a picture.
+/// Maximum time to wait for a picture.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Measures each case.
@@ -40,7 +40,7 @@ pub fn run(options: &Options) -> Result<Value, String> {
         let session = Session::new(SessionOptions::default()).map_err(|e| e.to_string())?;
         let mut worker = Worker::new(session, Arc::new(|| ()));
         let mut times: [Vec<f64>; 2] = Default::default();
-        // The first request finds nothing that is kept, as when a recipe is opened.
+        // For the first request nothing is kept yet, as when a recipe is opened.
         for k in 0..=options.repetitions {
             let changed = text.replacen(parameter, &format!("{key}{:?}", value * (1.0 + 0.01 * k as f64)), 1);
             let recipe = Recipe::parse(&changed, preset).map_err(|e| e.to_string())?;
@@ -63,16 +63,17 @@ pub fn run(options: &Options) -> Result<Value, String> {
     Ok(json!({ "area": "studio", "simd": orogen_simd::Level::current().name(), "threads": threads, "rows": rows }))
 }
 
-/// Nodes of the largest recipe, and edits of each.
+/// Number of nodes of the largest recipe.
 const NODES: usize = 500;
+/// Number of edits of each recipe.
 const EDITS: u64 = 40;
 
-/// The most seconds that the thread of the interface may be busy with anything but drawing.
+/// Maximum time that the thread of the interface may be busy with work other than drawing, in seconds.
 const BUSY: f64 = 0.016;
 
-/// The longest time that an edit, the request for its pictures and what they tell take on the thread of the interface,
-/// over all presets and a recipe of `NODES` nodes. Of each recipe the median counts: on a shared machine any one of
-/// them may be interrupted.
+/// The maximum time that an edit, the request for its pictures and the handling of the results take on the thread of
+/// the interface, over all presets and a recipe of `NODES` nodes. The median counts for each recipe, because on a
+/// shared machine a single edit may be interrupted.
 fn interface() -> Result<Value, String> {
     let mut large = String::from("orogen = 1\n\n[world]\ncell = 10\nsize = 1000\n\n[nodes.n0]\nop = \"fbm\"\n");
     for n in 1..NODES {

@@ -35,7 +35,7 @@ const RECIPE: &str = r#"
     nodes.land = { op = "fbm", wavelength = 60, octaves = 5 }
 "#;
 
-/// Chunks of blocks at random places, each made by itself, with and without a density.
+/// Number of chunks of blocks at random places, each made separately, with and without a density.
 const CHUNKS: usize = 400;
 
 /// Maximum time of a chunk in microseconds.
@@ -58,7 +58,7 @@ fn chunks(options: &Options) -> Result<Vec<Value>, String> {
         let world = World::open(recipe).map_err(|e| e.to_string())?;
         let mut times = Vec::new();
         for k in 0..CHUNKS {
-            // Places in about 16 million columns, in no order.
+            // Random places in about 16 million columns.
             let place = [0x9E37_79B9_7F4A_7C15u64, 0xC2B2_AE3D_27D4_EB4F]
                 .map(|step| 16 * ((k as u64 + 1).wrapping_mul(step) >> 44) as i64);
             let window = Window::new(16, 16, 1.0).at(place[0], place[1]);
@@ -80,7 +80,7 @@ const BIOMES: usize = 2048;
 /// Layers of a climate.
 const CLIMATE: [&str; 5] = ["temperature", "range", "rain", "evaporation", "biome"];
 
-/// A climate on heights that cost little, with rain at 1.6 km.
+/// A climate on cheap heights, with rain at a cell of 1.6 km.
 const CLIMATE_RECIPE: &str = r#"
     orogen = 1
     world = { seed = 1, size = 204800, cell = 100 }
@@ -93,7 +93,7 @@ const CLIMATE_RECIPE: &str = r#"
     outputs = { height = "land", temperature = "air", range = "air.range", rain = "rain", evaporation = "evaporation", biome = "biome" }
 "#;
 
-/// Measures the climate and biomes of a new world, without the threads that it starts.
+/// Measures the climate and biomes of a new world, without the start of its threads.
 fn climate(options: &Options) -> Result<Option<Value>, String> {
     let name = "climate and biomes";
     if !name.contains(&options.case) {
@@ -113,7 +113,7 @@ fn climate(options: &Options) -> Result<Option<Value>, String> {
     Ok(Some(Figure { case, ours: median(&mut times), unit: "s", other: None, target }.json()))
 }
 
-/// Measures each step, and all together.
+/// Measures each step, and all steps together.
 pub fn run(options: &Options) -> Result<Value, String> {
     let world = World::open(Recipe::parse(RECIPE, "tiles").map_err(|e| e.to_string())?).map_err(|e| e.to_string())?;
     let grid = world.window("height", &Window::new(SIDE, SIDE, 1.0)).map_err(|e| e.to_string())?;

@@ -1,4 +1,5 @@
-//! Water of a recipe on a mosaic of tiles that are made apart. Prints a table; fails if a target is missed.
+//! Checks the water of a recipe on a mosaic of tiles that are made separately. Prints a table, and fails if a target is
+//! missed.
 
 #[path = "../../crates/orogen/tests/suite/support/water/mod.rs"]
 #[allow(dead_code, reason = "the tests use the rest")]
@@ -16,10 +17,10 @@ use support::report;
 /// Cells along the side of a tile of an unbounded world.
 const SIDE: usize = 512;
 
-/// Half the side of the square of an unbounded world in which pairs lie, in cells.
+/// Half the side of the square of an unbounded world in which pairs of tiles are placed, in cells.
 const FAR: i64 = 1 << 20;
 
-/// What is measured.
+/// The options of the measurement.
 #[derive(Debug, PartialEq)]
 struct Request {
     recipe: String,

@@ -1,3 +1,3 @@
-//! Nothing is built: this file exists for the table `build-dependencies` of Cargo.toml.
+//! Builds nothing. The file is required by the table `build-dependencies` of Cargo.toml.
 
 fn main() {}

@@ -1,5 +1,5 @@
-//! Adds a noise, a filter, a format and a preset to a copy of the tree, as docs/development.md says, and checks that
-//! the copy compiles and that the checks name what is still missing.
+//! Adds a noise, a filter, a format and a preset to a copy of the tree, as described in docs/development.md. Checks
+//! that the copy compiles, and that the checks list everything that is still missing.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ const FILES: [(&str, &str); 4] = [
 const BASES: &str = "crates/orogen-noise/src/basis.rs";
 const BASIS: &str = include_str!("../templates/basis.txt");
 
-/// What the check of the lists says is missing afterwards.
+/// The messages of the check of the lists about missing things afterwards.
 const MISSING: [&str; 9] = [
     "crates/orogen-noise/tests/goldens.txt does not have `added-noise`: run `cargo xtask bless golden`",
     "golden/ops.txt does not have `added-filter`: run `cargo xtask bless golden`",
@@ -39,8 +39,8 @@ pub fn check() -> Result {
     sh(&mut in_copy(&root, "check --quiet --package orogen-cli --package orogen-features --no-default-features"))
 }
 
-/// The copy with everything added: a workspace in the folder of the target, of which only changed files are written, so
-/// that cargo compiles only these again.
+/// Makes the copy with everything added, a workspace in the target folder. Only changed files are written, so that
+/// cargo recompiles only these.
 fn added() -> Result<PathBuf> {
     let folder = shell::target_dir().join("adding");
     let (staged, copy) = (folder.join("staged"), folder.join("copy"));
@@ -59,8 +59,8 @@ fn added() -> Result<PathBuf> {
     Ok(copy)
 }
 
-/// Copies what git does not ignore of the folders that codegen and the libraries need. They are one folder deeper than
-/// in the original: cargo would take packages of the same path for the same.
+/// Copies the files that git does not ignore from the folders that codegen and the libraries need. They are one folder
+/// deeper than in the original, because cargo would treat packages with the same relative path as the same package.
 fn copy_tree(to: &Path) -> Result {
     let folders = ["crates", "docs", "golden", "fuzz/corpus/dem", "xtask/features", "clippy.toml", "rustfmt.toml"];
     let mut git = program("git");
@@ -81,7 +81,7 @@ fn workspace(manifest: &str) -> Result<String> {
     Ok(manifest.replace("\"crates/", "\"tree/crates/"))
 }
 
-/// Adds the things to the tree at `root`. The checks must complain first, then name all that is missing.
+/// Adds the things to the tree at `root`. The checks must fail first, then list everything that is missing.
 fn add(root: &Path) -> Result {
     for (file, text) in FILES {
         shell::write(&root.join(file), text)?;
@@ -107,7 +107,7 @@ fn add(root: &Path) -> Result {
     Ok(())
 }
 
-/// Cargo in the copy. Arguments after `--` are those of what it runs.
+/// Cargo in the copy. Arguments after `--` are passed to the program that it runs.
 fn in_copy(copy: &Path, args: &str) -> std::process::Command {
     let (args, others) = args.split_once(" -- ").unwrap_or((args, ""));
     let mut command = cargo(args);

@@ -64,13 +64,13 @@ How to read the table: docs/benchmarks.md.
 /// The areas of the bench program.
 const AREAS: &[&str] = &["noise", "erosion", "generate", "world", "outputs", "tiles", "studio"];
 
-/// Builds the libraries of graphics drivers, so it is measured only if it is named.
+/// An area that builds the libraries of graphics drivers, so it is measured only if it is named.
 const GPU: &str = "gpu";
 
-/// Needs files that are not part of the project, so it is measured only if it is named.
+/// An area that needs files that are not part of the project, so it is measured only if it is named.
 const REALISM: &str = "realism";
 
-/// Measures one recipe, so it runs only if it is named.
+/// An area that measures one recipe, so it runs only if it is named.
 const WATER: &str = "water";
 
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -96,7 +96,7 @@ pub fn run(args: &[String]) -> Result {
     if areas.len() > 1 && options.json.is_some() {
         return Err(Failure::usage("--json holds one area: name it"));
     }
-    // Whole runs use the program of users.
+    // Whole runs are measured with the program that users run.
     shell::run(&mut shell::cargo("build --quiet --release --package orogen-cli"))?;
     let program = shell::target_dir().join("release").join(format!("orogen{}", std::env::consts::EXE_SUFFIX));
     for area in areas {

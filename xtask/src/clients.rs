@@ -73,7 +73,7 @@ each core: each prints when it ends, and what it has printed so far is in target
 than Debian, or without root, the command prints what to install.
 ";
 
-/// A foreign program, or several that one script runs.
+/// A program of others, or several programs that one script runs.
 struct Client {
     /// The name of the step, and of its script in xtask/clients/.
     name: &'static str,
@@ -187,12 +187,12 @@ const CLIENTS: &[Client] = &[
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
 
-/// A step that runs by itself: it keeps all cores busy.
+/// A step that runs alone, because it keeps all cores busy.
 const fn alone(name: &'static str, about: &'static str, run: fn() -> Result) -> Step {
     Step { name, about, group: None, run }
 }
 
-/// A step that runs beside the others that need only what was built and installed.
+/// A step that runs in parallel with others that need only built and installed programs.
 const fn beside(name: &'static str, about: &'static str, run: fn() -> Result) -> Step {
     Step { name, about, group: Some(2), run }
 }
@@ -200,12 +200,12 @@ const fn beside(name: &'static str, about: &'static str, run: fn() -> Result) ->
 /// The names of the steps of this run.
 static CHOSEN: OnceLock<Vec<&'static str>> = OnceLock::new();
 
-/// Whether a step is one of this run.
+/// Whether a step is part of this run.
 fn is_chosen(name: &str) -> bool {
     CHOSEN.get().is_some_and(|chosen| chosen.contains(&name))
 }
 
-/// First by itself: packages of the system may replace the linker.
+/// Runs first and alone, because system packages may replace the linker.
 const INSTALL: Step = alone("install", "the programs of the clients, and the standard libraries of targets", || {
     install::programs(CLIENTS.iter().filter(|client| is_chosen(client.name)))?;
     if is_chosen("neon") {
@@ -213,7 +213,7 @@ const INSTALL: Step = alone("install", "the programs of the clients, and the sta
     }
     wasm::install()
 });
-/// It waits for downloads most of the time, so something is built beside it.
+/// Waits for downloads most of the time, so programs are built in parallel.
 const PACKAGES: Step = Step {
     name: "packages",
     about: "the Python and Node packages of the clients",
@@ -227,7 +227,7 @@ const BUILD: Step = Step {
     run: || sh(&mut cargo("build --quiet --release --package orogen-cli")),
 };
 
-/// The longest of those side by side first.
+/// Of the steps that run in parallel, the longest ones come first.
 const STEPS: &[&Step] = &[
     &INSTALL,
     &PACKAGES,
@@ -258,7 +258,7 @@ const STEPS: &[&Step] = &[
     &alone("gpu", "terrain and pictures on a graphics card, beside the processor's", gpu::check),
 ];
 
-/// Steps that run only if they are named, or with `--all`. [`passed`] keeps when they last passed.
+/// Steps that run only if they are named, or with `--all`. [`passed`] records when they last passed.
 const ON_REQUEST: &[&Step] = &[
     &beside("neon", "the tests of every SIMD level on an emulated ARM processor", || noted("neon", neon::check)),
     &beside("asan", "the tests of the SIMD levels under AddressSanitizer", || noted("asan", asan::check)),
@@ -277,7 +277,7 @@ const ON_REQUEST: &[&Step] = &[
     &alone("fuzz", "libFuzzer on the readers of foreign files", || noted("fuzz", || crate::fuzz::run(&[]))),
 ];
 
-/// Runs a step on request, and keeps when it passed.
+/// Runs a step on request, and records that it passed.
 fn noted(name: &str, check: impl Fn() -> Result) -> Result {
     check()?;
     passed::note(name)
@@ -289,7 +289,7 @@ pub fn run(args: &[String]) -> Result {
     let mut named = if is_all { Vec::new() } else { args.to_vec() };
     let mut steps = STEPS.to_vec();
     if is_all || !named.is_empty() {
-        // Before the steps that run alone, so that all that run side by side are neighbors.
+        // Before the steps that run alone, so that all steps that run in parallel are neighbors.
         let at = steps.iter().position(|step| step.name == "studio").unwrap_or(steps.len());
         steps.splice(at..at, ON_REQUEST.iter().copied());
     }
@@ -331,7 +331,8 @@ fn script(name: &str) -> Result {
     script_for(name, name)
 }
 
-/// Runs a script for one of several clients: a script runs what needs the client that `OROGEN_CLIENT` names.
+/// Runs a script for one of several clients. The environment variable `OROGEN_CLIENT` tells the script which client to
+/// use.
 fn script_for(client: &str, script: &str) -> Result {
     if !CLIENTS.iter().any(|c| c.name == client) {
         return Err(Failure::new(format!("{client} is not in the table of clients: nothing installs it")));
@@ -339,7 +340,7 @@ fn script_for(client: &str, script: &str) -> Result {
     script_by(&install::python(), client, script)
 }
 
-/// The same with another Python.
+/// [`script_for`] with another Python.
 fn script_by(python: &Path, client: &str, script: &str) -> Result {
     let work = folder().join("work").join(client);
     crate::shell::empty_dir(&work)?;

@@ -2,7 +2,7 @@
 //!
 //! A node is a file with one `op!` block. The lines of its module, its entry in the list of nodes and its part of the
 //! JSON Schema are generated from that file. An export format is a file that declares a `FORMAT`, a layer of vector
-//! features one that declares a `LAYER`, a preset a recipe.
+//! features is a file that declares a `LAYER`, and a preset is a recipe file.
 
 mod lists;
 mod missing;
@@ -53,8 +53,8 @@ pub fn run(args: &[String]) -> Result {
     written(check)
 }
 
-/// The lists of the tree at `root`, and what declarations lack that no list holds: a failure if `check` holds, else a
-/// note.
+/// Writes or checks the lists of the tree at `root`, and looks for missing things that are not in lists. Missing things
+/// are a failure if `check` is set, otherwise a note.
 pub fn lists(root: &Path, check: bool) -> Result {
     let mut missing = bases(root)?;
     missing.extend(ops(root, check)?);
@@ -70,7 +70,7 @@ pub fn lists(root: &Path, check: bool) -> Result {
     }
 }
 
-/// What noise bases lack; their table is no list of codegen.
+/// Messages about things that noise bases lack; their table is not generated.
 fn bases(root: &Path) -> Result<Vec<String>> {
     let table = shell::read(&root.join("crates/orogen-noise/src/basis.rs"))?;
     let rows = table.lines().filter(|line| line.contains(", cost "));

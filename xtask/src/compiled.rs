@@ -1,5 +1,5 @@
-//! What cargo compiles for the checks: two sets of packages with the same features of all that they share, so that
-//! nothing is compiled twice.
+//! The sets of packages that cargo compiles for the checks. Both sets use the same features of shared packages, so that
+//! no package is compiled twice.
 
 /// The whole workspace; the studio without its window, and no graphics card.
 pub const LIBRARIES: &str = "--workspace --exclude orogen-gpu --no-default-features";

@@ -1,4 +1,4 @@
-//! Checks that the documented surface of the libraries stays one that can be surveyed.
+//! Checks that the documented surface of the libraries stays small enough to survey.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -18,16 +18,16 @@ const TYPES: usize = 420;
 /// Maximum depth of a module.
 const DEPTH: usize = 2;
 
-/// What rustdoc has written.
+/// The documented surface, from the pages that rustdoc has written.
 #[derive(Default)]
 struct Surface {
     /// Number of items at the root of `orogen`.
     root: usize,
     /// The modules of all other crates.
     modules: BTreeSet<String>,
-    /// The types by their place in a crate: one that a crate passes on from another in the same place counts once.
+    /// The types by their path in a crate: a type that a crate re-exports at the same path counts once.
     places: BTreeSet<String>,
-    /// The types by crate and name: one that a crate has in two places counts once.
+    /// The types by crate and name: a type that a crate has at two paths counts once.
     types: BTreeSet<String>,
 }
 
@@ -74,7 +74,7 @@ pub fn check(pages: &Path) -> Result {
 
 /// Adds the modules and types of a folder of pages.
 fn read(folder: &Path, module: &str, surface: &mut Surface) -> Result {
-    // A folder without an index has only pages that lead on to where an item is documented.
+    // A folder without an index has only pages that redirect to the documentation of an item.
     let is_module = folder.join("index.html").is_file();
     if is_module && module.contains("::") {
         surface.modules.insert(module.to_owned());
@@ -99,7 +99,7 @@ fn is_item(name: &str) -> bool {
     name.ends_with(".html") && name.matches('.').count() == 2
 }
 
-/// Names, paths, and whether each is a folder, sorted: what counts for which crate must not depend on their order.
+/// Names, paths, and whether each is a folder, sorted, so that counts do not depend on the order of the file system.
 fn entries(folder: &Path) -> Result<Vec<(String, std::path::PathBuf, bool)>> {
     let listed = std::fs::read_dir(folder).map_err(|cause| on_file("read", folder, &cause))?;
     let entry = |entry: std::fs::DirEntry| {

@@ -76,7 +76,7 @@ pub fn run(args: &[String]) -> Result {
     pool::run(commands, |mut command| shell::run(&mut command))
 }
 
-/// The names of all targets, sorted: each is a program in fuzz/fuzz_targets.
+/// The names of all targets, sorted. Each target is a program in fuzz/fuzz_targets.
 fn targets() -> Result<Vec<String>> {
     let folder = shell::root().join("fuzz/fuzz_targets");
     let entries = std::fs::read_dir(&folder).map_err(|cause| on_file("read", &folder, &cause))?;

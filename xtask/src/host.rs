@@ -19,7 +19,7 @@ pub fn date() -> String {
 pub fn parse_date(text: &str) -> Option<i64> {
     let mut parts = text.split('-').map(|part| part.parse::<i64>().ok());
     let [year, month, _] = [parts.next()??, parts.next()??, parts.next()??];
-    // Some day of the month before, from which the date is at most two months away.
+    // A day around the previous month, at most two months before the date.
     let about = (year - 1970) * 365 + (month - 2) * 30;
     (about..about + 200).find(|day| shown(*day) == text)
 }

@@ -79,7 +79,7 @@ fn one(rest: &mut &[&str]) -> bool {
     let Some((&name, after)) = rest.split_first() else { return false };
     *rest = after;
     if take(rest, "WITH") {
-        // An exception only grants more.
+        // An exception only grants more rights.
         *rest = rest.get(1..).unwrap_or_default();
     }
     ACCEPTED.contains(&name)

@@ -81,7 +81,7 @@ fn resolved(folder: &Path, path: &str) -> PathBuf {
     whole
 }
 
-/// The text with code replaced by blanks; lines stay where they are.
+/// The text with code replaced by blanks; line numbers do not change.
 fn without_code(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut fence: Option<&str> = None;
@@ -162,7 +162,7 @@ pub fn links(text: &str) -> Vec<(usize, String)> {
     found
 }
 
-/// The anchors of a text's headings, as GitHub makes them, and those of `id` and `name` attributes.
+/// The anchors of a text's headings, as GitHub makes them, and of `id` and `name` attributes.
 fn headings(text: &str) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let mut fenced = false;

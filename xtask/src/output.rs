@@ -1,4 +1,4 @@
-//! Where the output of a step goes: to its log, which is followed while the step runs alone.
+//! Output of steps. It goes to the log of the step, which is printed as it grows while the step runs alone.
 
 use std::cell::RefCell;
 use std::fmt::Display;
@@ -10,14 +10,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// Time between two looks at a log that is followed.
+/// Interval at which a followed log is read.
 const POLLED: Duration = Duration::from_millis(100);
 
 thread_local! {
     static LOG: RefCell<Option<Arc<File>>> = const { RefCell::new(None) };
 }
 
-/// The log of this thread, or `None` if its output is ours.
+/// The log of this thread; `None` if its output goes to ours.
 pub fn log() -> Option<Arc<File>> {
     LOG.with_borrow(Clone::clone)
 }
@@ -36,7 +36,7 @@ pub fn line(text: impl Display) {
     }
 }
 
-/// Sends what a program prints where this thread's output goes.
+/// Sends the output of a program to the output of this thread.
 pub fn connect(command: &mut Command) -> &mut Command {
     match (copy(), copy()) {
         (Some(out), Some(errors)) => command.stdout(out).stderr(errors),
@@ -44,7 +44,7 @@ pub fn connect(command: &mut Command) -> &mut Command {
     }
 }
 
-/// The same for a program whose output is read: its errors alone.
+/// Sends only the errors of a program, whose output is read, to the output of this thread.
 pub fn connect_errors(command: &mut Command) -> &mut Command {
     command.stderr(copy().unwrap_or_else(Stdio::inherit))
 }
@@ -53,9 +53,9 @@ pub fn connect_errors(command: &mut Command) -> &mut Command {
 pub fn follow(log: &Path, is_complete: &AtomicBool) {
     let Ok(mut file) = File::open(log) else { return };
     loop {
-        // Asked before the rest is read: what is appended before it holds is printed.
+        // Loaded before the rest is read, so that everything that was appended until then is printed.
         let is_last = is_complete.load(Ordering::Acquire);
-        // What cannot be printed is in the log.
+        // Text that cannot be printed is still in the log.
         drop(io::copy(&mut file, &mut io::stdout().lock()));
         drop(io::stdout().flush());
         if is_last {

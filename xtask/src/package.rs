@@ -7,15 +7,15 @@ use crate::failure::{Failure, Result, on_file};
 use crate::front_door;
 use crate::shell::{self, cargo, program, run as sh};
 
-/// Packs every crate as it would be published, unpacks the archives and compiles what is in them alone: paths that lead
-/// out of a crate's folder, and files that are missing in it, fail here. Documents the libraries from there, too.
+/// Packs every crate as it would be published, unpacks the archives and compiles only their content. Paths that lead
+/// out of a crate's folder, and missing files, therefore fail. Documents the libraries from the archives, too.
 ///
 /// `cargo package` itself would generate code for each crate and its dependencies. Here no code is generated, and
 /// profile, features and target folder are those of clippy, so that dependencies are not compiled again. The crates for
 /// windows and graphics cards are not compiled here, see [`check_window`].
 pub fn check() -> Result {
     let folder = shell::target_dir().join("packages");
-    // Archives of other versions.
+    // Removes archives of other versions.
     shell::empty_dir(&folder.join("package"))?;
     // The Python package is published as a wheel.
     let left_out = "--exclude xtask --exclude orogen-bench --exclude orogen-features --exclude orogen-fuzz-targets \
@@ -31,7 +31,7 @@ pub fn check() -> Result {
     // Without the binary `orogen`, whose pages would overwrite those of the library of the same name, and without the
     // studio.
     let undocumented = "--exclude orogen-cli --exclude orogen-studio --exclude orogen-features";
-    // Pages of items that are no more would stay.
+    // Pages of items that no longer exist would remain.
     let pages = shell::target_dir().join("doc");
     shell::empty_dir(&pages)?;
     in_archives(&format!("doc --quiet {LIBRARIES} --no-deps {undocumented}"), "-D warnings")?;
@@ -46,12 +46,12 @@ pub fn check_window() -> Result {
     in_archives(&format!("check --quiet {WINDOW} --lib --bins"), "")
 }
 
-/// Where the archives are unpacked.
+/// The folder with the unpacked archives.
 fn unpacked() -> PathBuf {
     shell::target_dir().join("packages/unpacked")
 }
 
-/// Runs cargo on what is unpacked.
+/// Runs cargo on the unpacked archives.
 fn in_archives(args: &str, rustdoc_flags: &str) -> Result {
     let mut command = cargo(args);
     command.arg("--manifest-path").arg(unpacked().join("Cargo.toml")).arg("--target-dir").arg(shell::target_dir());
@@ -68,8 +68,8 @@ fn unpack(archives: &Path, into: &Path) -> Result<Vec<String>> {
         return Err(Failure::new("`cargo package` has made no archive"));
     }
     for archive in &archives {
-        // With -m the files have the time of now. Those in archives never change, and cargo would take changed files
-        // for those of before.
+        // With -m files get the current time. The times in archives never change, so cargo would not notice changed
+        // files.
         sh(program("tar").arg("-xzmf").arg(archive).arg("-C").arg(into))?;
     }
     Ok(archives.iter().filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned())).collect())
@@ -88,8 +88,7 @@ fn write_features(folder: &Path, crates: &[String]) -> Result {
     Ok(())
 }
 
-/// Makes a workspace of the unpacked crates, which are there what the registry would be to a user, with our profiles
-/// and versions of dependencies.
+/// Makes a workspace of the unpacked crates, in place of the registry, with our profiles and versions of dependencies.
 fn write_workspace(folder: &Path, crates: &[String]) -> Result {
     let root = shell::read(&shell::root().join("Cargo.toml"))?;
     let manifest = manifest(&root, crates)?;

@@ -1,4 +1,4 @@
-//! Work done side by side.
+//! Work that is done in parallel.
 
 use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,13 +8,13 @@ use std::thread::{self, ScopedJoinHandle};
 use crate::failure::{Failure, Result};
 use crate::output;
 
-/// The number of items at once: one for each core, and at least two, because some wait.
+/// The number of items that are worked on at once: one per core, and at least two, because some items wait.
 pub fn workers() -> usize {
     thread::available_parallelism().map_or(1, NonZero::get).max(2)
 }
 
-/// Does the work of every item, in order, as many at once as there are workers. After a failure no other item is begun.
-/// Returns all failures.
+/// Works on all items in order, as many at once as there are workers. After a failure no other item is started. Returns
+/// all failures.
 pub fn run<T: Send>(items: Vec<T>, work: impl Fn(T) -> Result + Sync) -> Result {
     let (log, failed, waiting) = (output::log(), AtomicBool::new(false), Mutex::new(items.into_iter()));
     let worker = || {

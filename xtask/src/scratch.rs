@@ -1,14 +1,14 @@
-//! A folder in memory for the files of tests: writing them to a disk, which the program waits for, would take a large
-//! part of the time of a run.
+//! A folder in memory for the files of tests: writing them to a disk, with the program waiting for it, would take a
+//! large part of the time of a run.
 
 use std::path::{Path, PathBuf};
 
 use crate::shell;
 
-/// Where Linux has a file system in memory.
+/// The folder of Linux's file system in memory.
 const MEMORY: &str = "/dev/shm";
 
-/// What must be free there, in KiB.
+/// Minimum free space in it, in KiB.
 const FREE_KIB: u64 = 4 << 20;
 
 /// A new folder in memory, which is removed with its files when this is dropped.
@@ -17,7 +17,7 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// The folder, or `None` where there is no file system in memory, or too little of it.
+    /// A new folder; `None` if there is no file system in memory, or too little free space in it.
     pub fn new() -> Option<Scratch> {
         let report = shell::capture(shell::program("df").args(["-Pk", MEMORY])).ok()?;
         if !cfg!(target_os = "linux") || free_kib(&report)? < FREE_KIB {
@@ -36,12 +36,12 @@ impl Scratch {
 
 impl Drop for Scratch {
     fn drop(&mut self) {
-        // What cannot be removed costs memory, but no test fails because of it.
+        // Files that cannot be removed use memory, but no test fails because of them.
         let _ = std::fs::remove_dir_all(&self.path);
     }
 }
 
-/// What is free according to `df -Pk`, if the folder is a file system of its own in memory.
+/// The free space in KiB according to `df -Pk`, if the folder is a separate file system in memory.
 fn free_kib(report: &str) -> Option<u64> {
     let words: Vec<&str> = report.lines().nth(1)?.split_whitespace().collect();
     (words.first() == Some(&"tmpfs") && words.last() == Some(&MEMORY)).then_some(())?;

@@ -12,7 +12,7 @@ pub fn root() -> &'static Path {
     here.parent().unwrap_or(here)
 }
 
-/// The target folder: that of this program, wherever the user has configured it.
+/// The target folder of this program, wherever the user has configured it.
 pub fn target_dir() -> PathBuf {
     let exe = std::env::current_exe().ok();
     let dir = exe.as_deref().and_then(Path::parent).and_then(Path::parent).map(Path::to_path_buf);
@@ -47,7 +47,7 @@ pub fn run(command: &mut Command) -> Result {
     if status.success() { Ok(()) } else { Err(Failure::new(format!("`{}` ended with {status}", shown(command)))) }
 }
 
-/// The same; returns how it ended.
+/// [`run`] that returns the exit status.
 pub fn status(command: &mut Command) -> Result<ExitStatus> {
     output::connect(command).stdin(Stdio::null()).status().map_err(|e| cannot_start(command, &e))
 }

@@ -1,5 +1,5 @@
-//! Named steps in order, each timed; the first failure ends the run. Neighbors of the same group run side by side. What
-//! a step prints is kept in `steps/NAME.log` in the target folder.
+//! Named steps in order, each timed; the first failure ends the run. Neighbors of the same group run in parallel. The
+//! output of a step is kept in `steps/NAME.log` in the target folder.
 
 use std::fs::File;
 use std::io::{self, Write as _};
@@ -17,8 +17,8 @@ pub struct Step {
     pub name: &'static str,
     /// The description in the list.
     pub about: &'static str,
-    /// Neighbors of the same group run side by side: none depends on another, shares a folder with it or has time
-    /// limits. Without a group it runs alone.
+    /// Neighbors of the same group run in parallel: none depends on another one, shares a folder with it or has time
+    /// limits. A step without a group runs alone.
     pub group: Option<u32>,
     /// The function. It prints with [`output::line`] and starts programs with [`shell`].
     pub run: fn() -> Result,
@@ -31,9 +31,9 @@ const LAST_LINES: usize = 60;
 struct Run<'a> {
     /// The command that runs a single step.
     command: &'a str,
-    /// The names and seconds of those that are done.
+    /// The names and times in seconds of finished steps.
     done: Mutex<Vec<Vec<String>>>,
-    /// The names of those that failed.
+    /// The names of failed steps.
     failed: Mutex<Vec<&'static str>>,
 }
 
@@ -60,7 +60,7 @@ pub fn run(command: &str, steps: &[&Step], named: &[String]) -> Result {
 }
 
 impl Run<'_> {
-    /// Runs a step that prints as it goes.
+    /// Runs a step, and prints its output as it is written.
     fn in_sight(&self, step: &Step) -> Result {
         println!("{}", title(step));
         let (path, is_complete) = (new_log(step)?, AtomicBool::new(false));
@@ -74,7 +74,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Runs a step beside others. What it prints goes to our output when it ends.
+    /// Runs a step in parallel with others. Its output is printed when it ends.
     fn logged(&self, step: &Step) -> Result {
         let path = new_log(step)?;
         println!("    {} started", step.name);
@@ -84,7 +84,7 @@ impl Run<'_> {
         if let Ok(seconds) = &result {
             text.extend(format!("{}\n", self.end(step, seconds.clone())).into_bytes());
         }
-        // At once, so that nothing of other steps gets between.
+        // Written at once, so that the output of other steps does not get between.
         io::stdout().lock().write_all(&text).map_err(|cause| Failure::new(format!("cannot print: {cause}")))?;
         result.map(drop)
     }
@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn steps_side_by_side_meet_and_their_failures_name_them() {
-        // Each waits for the other.
+        // Each of the two waits for the other.
         static MEETING: std::sync::Barrier = std::sync::Barrier::new(2);
         fn meets() -> Result {
             MEETING.wait();

@@ -94,7 +94,7 @@ pub fn run(args: &[String]) -> Result {
     steps::run("cargo xtask test", STEPS, args)
 }
 
-/// All ignored tests. Without doctests, where `ignore` marks code that is not meant to run.
+/// Runs all ignored tests, without doctests, where `ignore` marks code that is not meant to run.
 fn long(name: Option<&str>) -> Result {
     reasons()?;
     let targets = format!("test {LIBRARIES} --lib --bins --tests --examples");
@@ -133,15 +133,16 @@ fn reasons() -> Result {
 fn tests() -> Result {
     let scratch = Scratch::new();
     let mut command = cargo(&format!("test {LIBRARIES} --tests"));
-    // Not for doctests, which are programs in that folder: often nothing can be executed in memory.
+    // Not for doctests: they are programs in the temporary folder, and file systems in memory often do not allow
+    // execution.
     command.envs(scratch.iter().map(|scratch| ("TMPDIR", scratch.path())));
     sh(&mut command)?;
     sh(&mut cargo(&format!("test {LIBRARIES} --doc")))
 }
 
-/// Checks the libraries without files and threads. No code of theirs, tests aside, may then name anything of the
-/// standard library's file system: `xtask/no_fs/clippy.toml` lists it. `cargo xtask clients wasm` runs what is checked
-/// here.
+/// Checks the libraries without files and threads. Except in tests, their code may then not use the standard library's
+/// file system: `xtask/no_fs/clippy.toml` lists the disallowed names. `cargo xtask clients wasm` runs the code that is
+/// checked here.
 fn features() -> Result {
     let mut clippy = cargo("clippy --quiet --package orogen --lib --no-default-features -- -D warnings");
     clippy.arg("-D").arg("clippy::disallowed_types");

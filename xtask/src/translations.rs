@@ -38,7 +38,7 @@ struct Page<'a> {
     text: String,
 }
 
-/// What a translation keeps.
+/// A kind of part that a translation keeps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
     Heading,
@@ -52,13 +52,13 @@ enum Kind {
     Link,
 }
 
-/// A part of a file that its translation has, too.
+/// A part of a file that its translation must also have.
 struct Part {
-    /// From 1.
+    /// The line number, from 1.
     line: usize,
     kind: Kind,
-    /// What must be equal: the marks of a heading, the columns of a row and the inline code in its first cell, the
-    /// language of a block, code without its comment, a target.
+    /// The text that must be equal: the marks of a heading, the columns of a row and the inline code in its first cell,
+    /// the language of a block, code without its comment, the target of a link.
     key: String,
     /// The text for messages.
     shown: String,
@@ -95,7 +95,7 @@ fn faults(original: &Page, translation: &Page) -> Vec<String> {
     let names = [original.name, translation.name];
     let (left, right) = (parts(&original.text, names), parts(&translation.text, names));
     let last_line = translation.text.lines().count();
-    // Each run of parts between two that both files have.
+    // Each run of parts between two parts that both files have.
     let (mut i, mut j) = (0, 0);
     let common = common(&left, &right);
     for (to_i, to_j) in common.into_iter().chain([(left.len(), right.len())]) {
@@ -268,7 +268,7 @@ mod tests {
                 "  b.md:26: at the end, link `#first` of a.md:26 is missing",
             ]
         );
-        // In another place.
+        // The part is in another place.
         assert_eq!(changed("\n## 一\n", "").len(), 1);
         assert_eq!(found(ENGLISH, &CHINESE.replace("## 一\n", "").replace("seed", "## 一\n\nseed")).len(), 3);
     }

@@ -1,4 +1,4 @@
-//! Checks that no name and no text uses a term that the field has a better one for.
+//! Checks that no name and no text uses a term for which there is a better standard term.
 
 use std::path::Path;
 use std::process::Command;
@@ -105,7 +105,7 @@ const SPELLINGS: &[(&str, &str)] = &[
     ("favour", "favor"),
 ];
 
-/// Ends of the names of Markdown files that are generated, have an entry a line, or are not in English.
+/// Ends of the names of Markdown files that are generated, have one entry per line, or are not in English.
 const NOT_PROSE: &[&str] = &["docs/ops.md", "docs/gallery.md", "CHANGELOG.md", ".zh-CN.md"];
 
 /// Words that end with a dot within a sentence.
@@ -154,7 +154,7 @@ fn faults(line: &str) -> Vec<String> {
         let prefix = PREFIXES.iter().find(|(prefix, _)| pair[1].starts_with(prefix));
         faults.extend(name.or(prefix).map(|(_, instead)| format!("`{}`: {instead}", pair[1])));
     }
-    // What is quoted may be typed by a user, or stand in a file.
+    // Quoted words may be typed by a user, or be in a file.
     let is_quoted = |word: &str| {
         line.contains(&format!("\"{word}")) || line.contains(&format!("-{word}")) || line.contains(&format!("__{word}"))
     };
@@ -176,7 +176,7 @@ fn has_sentences(line: &str) -> bool {
     if text.starts_with(['#', '|', '<', '!']) || line.starts_with("    ") && !text.starts_with("- ") {
         return false;
     }
-    // What stands between backticks or in brackets ends no sentence.
+    // A dot between backticks or in brackets does not end a sentence.
     let (mut is_code, mut depth) = (false, 0);
     let mut outside = String::new();
     for c in text.chars() {

@@ -26,7 +26,7 @@ pub enum Work {
     PerlinSlice,
     /// Perlin noise at scattered points.
     PerlinScattered,
-    /// The same points in f32, seen from the middle of the picture.
+    /// Perlin noise at the same points in f32, relative to the middle of the picture.
     PerlinAround,
     /// Fractal sum of Perlin noise.
     Fbm,

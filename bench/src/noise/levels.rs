@@ -1,4 +1,4 @@
-//! AVX2 compared with AVX-512, on machines that use the latter.
+//! AVX2 compared with AVX-512, on machines that use AVX-512.
 
 use orogen_simd::Level;
 
@@ -25,7 +25,7 @@ pub fn below(case: &Case) -> Option<Job> {
     }))
 }
 
-/// Its row.
+/// The row of that job.
 pub fn row(case: &Case, rate: f64, full: Option<f64>) -> Row {
     let peer = full.map(|full| (TARGET.peer, full));
     Row { case: format!("{} at AVX2", case.name), ours: Some(rate), peer, target: Some(TARGET) }

@@ -9,7 +9,7 @@ use crate::rows::{Row, Target};
 
 /// Samples per side.
 const SIDE: usize = 2048;
-/// Number of fills per thread: one fill takes hardly ten times as long as starting a thread.
+/// Number of fills per thread, because one fill takes less than ten times as long as starting a thread.
 const TIMES: usize = 16;
 const TARGET: Target = Target { peer: "one thread", ratio: 1.9, or_rate: None };
 
@@ -49,7 +49,7 @@ pub fn rows(options: &Options) -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-/// The picture in as many bands of rows, one thread for each; a single band needs no thread.
+/// Fills the picture in `threads` bands of rows, with one thread for each; a single band needs no thread.
 fn job(name: &'static str, fill: Fill, threads: usize) -> Job {
     let axis: Vec<f64> = (0..SIDE).map(|i| i as f64).collect();
     let rows = SIDE / threads;

@@ -53,7 +53,7 @@ fn few_triangles(name: &str, grid: &Grid, options: &Options) -> Result<Figure, S
     let [low, high] = grid.data().iter().fold([f32::MAX, f32::MIN], |[l, h], v| [l.min(*v), h.max(*v)]).map(f64::from);
     let max_error = SHARE * (high - low);
     let theirs = pydelatin(grid, max_error, options.repetitions)?;
-    // The error that the peer reached.
+    // Our mesh gets the error that the peer reached.
     let max_error = theirs.as_ref().map_or(max_error, |theirs| theirs.error);
     let shape = adaptive(grid, max_error).map_err(|e| e.to_string())?;
     let error = shape.deviation(grid);

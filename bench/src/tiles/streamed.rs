@@ -1,6 +1,6 @@
-//! Maps of a thousand million cells by the `orogen` program, in bounded memory, with every file that such a map has.
+//! Maps of a billion cells by the `orogen` program, in bounded memory, with all files of such a map.
 //!
-//! Needs 20 GiB of disk for temporary files, and minutes.
+//! It needs 20 GiB of disk space for temporary files, and takes minutes.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use crate::options::Options;
 use crate::world::figure::{Figure, Target};
 use crate::world::process::{Cost, program, watch};
 
-/// Cells along a side: of the large map, of a quick run, and of the map with which it is compared.
+/// Cells along a side: of the large map, of the large map in a quick run, and of the map with which it is compared.
 const LARGE: usize = 31_623;
 const MIDDLE: usize = 8_192;
 const SMALL: usize = 4_096;
@@ -18,7 +18,7 @@ const SMALL: usize = 4_096;
 const MEMORY: &str = "256MiB";
 const MAX_MIB: f64 = 1.1 * 256.0;
 
-/// Maximum ratio of the CPU time of a cell to that of the small map.
+/// Maximum ratio of the CPU time per cell to the small map's.
 const DEARER: f64 = 1.15;
 
 /// The classes of the map.
@@ -50,7 +50,7 @@ struct Bench {
 
 impl Drop for Bench {
     fn drop(&mut self) {
-        // Only files made here, in a folder of our own, are removed.
+        // The folder has only files that were made here.
         let _ = std::fs::remove_dir_all(&self.folder);
     }
 }

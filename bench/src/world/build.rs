@@ -1,8 +1,8 @@
 //! Whole builds by the `orogen` program: 32768 x 32768 samples under 1 GiB, compared with small ones; two threads;
 //! resuming.
 //!
-//! Needs a dozen GiB of disk for temporary files, and minutes. CPU time is compared, which other load changes little,
-//! except for threads.
+//! It needs a dozen GiB of disk space for temporary files, and takes minutes. CPU time is compared, which other load
+//! changes little; threads are compared by wall time.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,8 @@ use super::hills;
 use super::process::{Cost, program, watch};
 use crate::options::Options;
 
-/// Samples per side: of the large build, of the one it is compared with, and of the one with wall time.
+/// Samples per side: of the large build, of the build with which it is compared, and of the build whose wall time is
+/// measured.
 const LARGE: usize = 32_768;
 const SMALL: usize = 4_096;
 const MIDDLE: usize = 8_192;
@@ -20,7 +21,7 @@ const MIDDLE: usize = 8_192;
 const MEMORY: &str = "1GiB";
 const MAX_GIB: f64 = 1.2;
 
-/// Maximum ratio of the cost of a sample in the large build.
+/// Maximum ratio of the cost per sample in the large build.
 const DEARER: f64 = 1.15;
 
 /// Required speedup of two threads.
@@ -40,7 +41,7 @@ struct Bench {
 
 impl Drop for Bench {
     fn drop(&mut self) {
-        // Only files made here, in a folder of our own, are removed.
+        // The folder has only files that were made here.
         let _ = std::fs::remove_dir_all(&self.folder);
     }
 }

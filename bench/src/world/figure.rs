@@ -7,9 +7,9 @@ use serde_json::{Value, json};
 pub enum Target {
     /// Maximum of the figure.
     AtMost(f64),
-    /// Maximum ratio of the figure to the other.
+    /// Maximum ratio of the figure to the other figure.
     RatioAtMost(f64),
-    /// Minimum ratio of the other to the figure (speedup).
+    /// Minimum ratio of the other figure to the figure (speedup).
     FasterBy(f64),
     /// No target.
     None,

@@ -4,7 +4,7 @@ use super::figure::{Figure, Target};
 use super::process::{program, watch};
 use crate::options::Options;
 
-/// With one and with two stages of `stream-power`.
+/// Presets with one and with two stages of `stream-power`.
 const PRESETS: [&str; 4] = ["volcano", "dla-peaks", "canyon", "alpine"];
 
 /// Maximum ratio of the animation's CPU time to the terrain's.
@@ -36,7 +36,7 @@ pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
             target: Target::RatioAtMost(DEARER),
         })
     });
-    // Only files made here, in a folder of our own, are removed.
+    // The folder has only files that were made here.
     let _ = std::fs::remove_dir_all(&folder);
     figures.into_iter().collect()
 }

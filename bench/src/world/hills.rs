@@ -1,4 +1,5 @@
-//! The measured worlds, all based on hills of noise: the former preset `hills`, whose figures stay comparable.
+//! The measured worlds, all based on hills of noise. The hills are a former version of the preset `hills`, so that
+//! figures stay comparable.
 
 use orogen::filter::Blur;
 use orogen::solver::Normalise;

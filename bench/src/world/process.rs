@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-/// Interval of checks.
+/// Interval at which the process is checked.
 const INTERVAL: Duration = Duration::from_millis(5);
 
 /// The kernel reports CPU time in hundredths of a second.

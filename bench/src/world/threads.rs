@@ -1,5 +1,5 @@
-//! Two threads compared with one: wall time of a window of 2048 x 2048. The best of many runs, because other load only
-//! makes a run slower, and affects two threads more: the figure needs an idle machine.
+//! Two threads compared with one: wall time of a window of 2048 x 2048. The best of many runs counts, because other
+//! load only makes a run slower. It affects two threads more, so the figure needs an idle machine.
 
 use std::time::Instant;
 
@@ -29,7 +29,7 @@ pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
             for (world, best) in worlds.iter().zip(&mut best) {
                 let start = Instant::now();
                 world.window(layer, &window).map_err(|e| e.to_string())?;
-                // The first round solves.
+                // The first round includes solving.
                 if round > 0 {
                     *best = best.min(start.elapsed().as_secs_f64() * 1000.0);
                 }

@@ -14,8 +14,9 @@ const TILE: usize = 512;
 /// Samples per side: the halo is a sixteenth of a tile's side, and there are 8 x 8 tiles.
 const SIDE: usize = 4096;
 
-/// Maximum ratio of CPU time: tiles one at a time, and in a stream that shares halos.
+/// Maximum ratio of the CPU time of tiles that are made one at a time.
 const ALONE: f64 = 1.4;
+/// Maximum ratio of the CPU time of tiles in a stream that shares halos.
 const SHARED: f64 = 1.15;
 
 const LAYER: &str = "stretched";
@@ -26,7 +27,7 @@ pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     let cell = length / SIDE as f64;
     let world = hills::open(hills::with_halo(cell)?, 1)?;
     let window = Window::new(SIDE, SIDE, cell);
-    // Solved once, before any timing.
+    // Solves the world before any timing.
     world.window(LAYER, &Window::new(TILE, TILE, cell)).map_err(|e| e.to_string())?;
     let ways: [fn(&World, &Window) -> orogen::Result<()>; 3] = [whole, alone, shared];
     let mut times = ways.map(|_| Vec::new());

@@ -15,7 +15,7 @@ struct Peer {
 }
 
 const PEERS: &[Peer] = &[
-    // Its last release on PyPI is source that does not compile with newer Pythons.
+    // Its last release on PyPI is source code that does not compile with newer Pythons.
     Peer {
         area: "erosion",
         variable: "OROGEN_RICHDEM",

@@ -1,5 +1,6 @@
-//! `cargo xtask bench realism`: compares presets with real terrain, with a script and real places that are not part of
-//! the project. Mountains are compared with all places, other presets with land of their type, which the script knows.
+//! `cargo xtask bench realism`: compares presets with real terrain, using a script and real places that are not part of
+//! the project. Mountains are compared with all places, other presets with land of their type, which the script
+//! defines.
 
 use std::path::{Path, PathBuf};
 
@@ -15,16 +16,17 @@ struct Case {
     targets: Targets,
 }
 
-/// What a preset is compared with, and which samples of it.
+/// The real land with which a preset is compared, and the compared samples of the preset.
 enum Land {
-    /// With all places of the folder: [`SIDE`] x [`SIDE`] samples at [`CELL`] metres, from this sample east and south
-    /// on.
+    /// All places of the folder, compared with [`SIDE`] x [`SIDE`] samples at [`CELL`] metres, starting from this
+    /// sample.
     Any([i64; 2]),
-    /// The same around the highest place within 490 km of this sample: land elsewhere may be sea or plain.
+    /// All places, compared with as many samples around the highest place within 490 km of this sample: land elsewhere
+    /// may be sea or plain.
     Highest([i64; 2]),
-    /// The same, of the whole world at a cell in metres.
+    /// All places, compared with the whole world at a cell in metres.
     Whole(u32),
-    /// With land of this type: the whole world, at a cell in metres.
+    /// Land of this type, compared with the whole world at a cell in metres.
     Type(&'static str, u32),
 }
 
@@ -70,11 +72,12 @@ const CASES: &[Case] = &[
 const SIDE: u32 = 1024;
 const CELL: u32 = 60;
 
-/// 10 066 km in samples, a border of the tiles of all levels: a coarsest tile has 128 x 2048 of them a side.
+/// 10 066 km in samples, a border of the tiles of all levels: a coarsest tile has 128 x 2048 samples per side.
 const FAR: i64 = 640 << 18;
 
-/// Cell in samples, and samples a side, in which the highest place is searched.
+/// The cell at which the highest place is searched, in samples.
 const FAR_CELL: i64 = 128;
+/// Side of the window in which the highest place is searched, in samples at that cell.
 const FAR_SIDE: i64 = 128;
 
 /// Options of area `realism`.
@@ -207,7 +210,7 @@ fn make(program: &Path, case: &Case, seed: u64, file: &Path) -> Result {
     shell::run(command.arg("-o").arg(file))
 }
 
-/// The sample at the highest place around another, found at a larger cell.
+/// The sample at the highest place around a sample, found at a larger cell.
 fn highest(program: &Path, case: &Case, seed: u64, at: [i64; 2]) -> Result<[i64; 2]> {
     let first = at.map(|index| index / FAR_CELL - FAR_SIDE / 2);
     let window = format!("{},{},{FAR_SIDE},{FAR_SIDE}", first[0], first[1]);

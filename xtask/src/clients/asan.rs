@@ -1,10 +1,10 @@
-//! The crate with unsafe code and its kernels under LLVM's AddressSanitizer: a read or write outside a slice ends the
-//! test.
+//! Tests of the crate with unsafe code and of its kernels under LLVM's AddressSanitizer: a read or write outside a
+//! slice ends the test.
 
 use crate::failure::Result;
 use crate::shell;
 
-/// Every level, every entry point, odd positions and parameters, empty and single samples.
+/// Tests of every level and entry point, with unusual positions and parameters, and with empty and single samples.
 const TESTS: [&str; 2] = [
     "test --quiet --package orogen-simd --lib",
     "test --quiet --package orogen-noise --test suite -- goldens:: odd:: ways::",
@@ -22,7 +22,7 @@ pub fn check() -> Result {
             // A named target keeps the flags from build scripts.
             .env("CARGO_BUILD_TARGET", &host)
             .env("CARGO_TARGET_DIR", super::folder().join("asan"))
-            // The report has function names without it, and the build is shorter.
+            // The report has function names without debug information, and the build is shorter.
             .env("CARGO_PROFILE_DEV_DEBUG", "false")
             .env("CARGO_INCREMENTAL", "0");
         shell::run(&mut command)?;
@@ -35,7 +35,7 @@ mod tests {
     use super::*;
     use crate::clients::neon;
 
-    /// A filter that matches no test would be no failure.
+    /// Checks the filters, because a filter that matches no test does not fail.
     #[test]
     fn filters_of_tests_are_modules_of_the_suite() {
         let suite = shell::root().join("crates/orogen-noise/tests/suite");

@@ -1,5 +1,5 @@
-//! Blender as a Python module. It is large (1 GiB installed) and needs one version of Python and its own NumPy, so it
-//! runs only if it is named.
+//! Blender as a Python module. It is large (1 GiB installed) and needs a specific version of Python and its own NumPy,
+//! so it runs only if it is named.
 
 use std::path::PathBuf;
 

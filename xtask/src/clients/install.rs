@@ -67,7 +67,7 @@ pub fn foreign_apt(architecture: &str, packages: &[&str]) -> Result {
     apt(packages)
 }
 
-/// Whether this is Debian, and we are root.
+/// Whether the system is Debian and the user is root.
 fn may_install() -> bool {
     let root = shell::capture(shell::program("id").arg("-u")).is_ok_and(|id| id.trim() == "0");
     root && on_path("apt-get")
@@ -143,7 +143,7 @@ pub fn patiently(command: impl Fn() -> Command) -> Result {
     shell::run(&mut command())
 }
 
-/// Whether a folder contains exactly these packages, by the note written after the installation.
+/// Whether a folder contains exactly these packages, according to the note written after the installation.
 fn installed(folder: &Path, packages: &[&str]) -> bool {
     std::fs::read_to_string(note(folder)).is_ok_and(|text| text.lines().eq(packages.iter().copied()))
 }

@@ -11,7 +11,7 @@ use crate::{output, shell};
 
 const TARGET: &str = "aarch64-unknown-linux-gnu";
 
-/// The linker and the emulator: each file or program with its package.
+/// The packages of the linker and the emulator, each with a file or program that it installs.
 pub const APT: &[(&str, &str)] = &[
     ("aarch64-linux-gnu-gcc", "gcc-aarch64-linux-gnu"),
     ("/usr/aarch64-linux-gnu/lib/libc.a", "libc6-dev-arm64-cross"),
@@ -22,8 +22,8 @@ pub const APT: &[(&str, &str)] = &[
 const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
 const DEBIAN_PACKAGES: [&str; 2] = ["rustc-web", "libstd-rust-web-dev:arm64"];
 
-/// The tests that are run: bits against the goldens, all entry points against each other, every operation against the
-/// scalar level.
+/// The tests: bits compared with golden files, all entry points with each other, and every operation with the scalar
+/// level.
 pub const TESTS: [&str; 2] = [
     "test --quiet --package orogen-simd --lib",
     "test --quiet --package orogen-noise --test suite -- goldens:: ways::",
@@ -60,7 +60,7 @@ pub fn check() -> Result {
     Ok(())
 }
 
-/// On an ARM machine nothing is emulated.
+/// Whether this is an ARM machine, on which nothing is emulated.
 const fn native() -> bool {
     cfg!(target_arch = "aarch64")
 }
@@ -78,7 +78,8 @@ fn cross(command: &mut Command) -> Result {
         .env("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER", "qemu-aarch64")
         // Statically linked: otherwise the emulator would mix the C libraries of several packages.
         .env("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUSTFLAGS", "-C target-feature=+crt-static")
-        // Under emulation the default optimization level takes longer to run than this one takes to build.
+        // Under emulation, code of the default optimization level takes longer to run than code of this level takes to
+        // build.
         .env("CARGO_PROFILE_DEV_OPT_LEVEL", "2")
         .env("CARGO_PROFILE_DEV_DEBUG", "false")
         .env("CARGO_INCREMENTAL", "0");

@@ -1,4 +1,4 @@
-//! A committed file that says when each step on request last passed, one line a step.
+//! A committed file with the date when each step on request last passed, one line per step.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -21,9 +21,9 @@ fn path() -> PathBuf {
     shell::root().join("xtask/clients/passed.txt")
 }
 
-/// Notes that a step has passed now.
+/// Records that a step has passed now.
 pub fn note(step: &str) -> Result {
-    // Steps run side by side.
+    // Steps run in parallel.
     static WRITING: Mutex<()> = Mutex::new(());
     let pass = format!("{} {} {}", host::date(), commit()?, host::processor());
     let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
@@ -32,7 +32,7 @@ pub fn note(step: &str) -> Result {
     shell::write(&path(), &text(&passes))
 }
 
-/// The commit, with a `+` if files have changed since, apart from the one that is written here.
+/// The commit, with a `+` if files other than the one written here have changed since.
 fn commit() -> Result<String> {
     let commit = shell::capture(shell::program("git").args(["rev-parse", "--short", "HEAD"]))?;
     let changes = ["status", "--porcelain", "--", ".", ":!xtask/clients/passed.txt"];
@@ -40,7 +40,7 @@ fn commit() -> Result<String> {
     Ok(format!("{}{}", commit.trim(), if is_clean { "" } else { "+" }))
 }
 
-/// The steps of these that have not passed for too long, each with its last pass.
+/// The given steps that have not passed for too long, each with its last pass.
 pub fn old(steps: &[&str]) -> Result<Vec<String>> {
     Ok(older(&parse(&shell::read(&path())?), steps, host::today()))
 }

@@ -20,7 +20,7 @@ pub fn check_all() -> Result {
     check_with(|_| &THREADS)
 }
 
-/// The same with the numbers of threads for the level at an index.
+/// Makes each preset at each SIMD level. `threads` returns the numbers of threads for the index of a level.
 fn check_with(threads: fn(usize) -> &'static [&'static str]) -> Result {
     let golden = shell::read(&shell::root().join(GOLDEN))?;
     let golden =

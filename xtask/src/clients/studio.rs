@@ -5,7 +5,7 @@ use crate::failure::Result;
 use crate::package;
 use crate::shell::{cargo, run as sh};
 
-/// Compiles what needs the libraries of windows and graphics cards, with their tests.
+/// Compiles the packages that need the libraries of windows and graphics cards, with their tests.
 pub fn build() -> Result {
     sh(&mut cargo(&format!("clippy --quiet {WINDOW} --all-targets -- -D warnings")))?;
     package::check_window()?;
@@ -13,7 +13,7 @@ pub fn build() -> Result {
     sh(&mut cargo(&format!("build --quiet {WINDOW} --bins")))
 }
 
-/// Tests it as a person uses it, and opens its window in both languages.
+/// Runs its tests of user actions, and opens its window in both languages.
 pub fn check() -> Result {
     sh(&mut cargo(&format!("test --quiet {WINDOW} --lib --test window")))?;
     sh(&mut cargo(&format!("build --quiet {WINDOW} --bins")))?;

@@ -1,5 +1,5 @@
-//! The libraries built for WebAssembly, without an operating system; presets are made under node and must have the
-//! golden hash.
+//! Tests of the libraries built for WebAssembly, without an operating system. Presets are made under Node.js and must
+//! have the golden hash.
 
 use std::path::Path;
 
@@ -31,13 +31,13 @@ pub fn check_four() -> Result {
     check(FOUR)
 }
 
-/// The same with every preset.
+/// Makes every preset, and a world without files.
 pub fn check_all() -> Result {
     check("")
 }
 
-/// Builds without threads and without the feature `fs`, with 128-bit vectors, and makes these presets; without a name,
-/// all.
+/// Builds without threads and without the feature `fs`, with 128-bit vectors, and makes these presets; all if the text
+/// is empty.
 fn check(presets: &str) -> Result {
     let folder = super::folder().join("wasm");
     let build = |example: &str| {
@@ -68,7 +68,7 @@ fn check(presets: &str) -> Result {
     }
 }
 
-/// Runs an example under node; returns its exit code.
+/// Runs an example under Node.js; returns its exit code.
 fn run(folder: &Path, example: &str) -> Result<Option<i32>> {
     let module = folder.join(TARGET).join(format!("release/examples/{example}.wasm"));
     let mut run = shell::program("node");

@@ -1,4 +1,4 @@
-//! What belongs to a declaration and is not generated at once: golden lines, pictures, rows of pages.
+//! Things that a declaration needs and that codegen does not write: golden lines, pictures, rows of pages.
 
 use std::path::Path;
 
@@ -7,9 +7,9 @@ use crate::shell;
 
 /// Files that belong to a declaration; `NAME` stands for its name.
 pub struct Required {
-    /// The file, or several of which one suffices.
+    /// The file, or several files of which one suffices.
     files: &'static [&'static str],
-    /// Texts of which one must be in it. Without any, the file only has to exist.
+    /// Texts, one of which must be in the file. If there are none, the file only has to exist.
     texts: &'static [&'static str],
     /// What to do if it is missing.
     how: &'static str,
@@ -18,21 +18,21 @@ pub struct Required {
 const BLESS: &str = "run `cargo xtask bless golden`";
 const GALLERY: &str = "run `cargo xtask gallery NAME`";
 
-/// Of an op.
+/// Files of an op.
 pub const OP: &[Required] = &[Required { files: &["golden/ops.txt"], texts: &["\nNAME ", "\nNAME."], how: BLESS }];
 
-/// Of a noise basis.
+/// Files of a noise basis.
 pub const BASIS: &[Required] =
     &[Required { files: &["crates/orogen-noise/tests/goldens.txt"], texts: &["\nfbm NAME "], how: BLESS }];
 
-/// Of an export format.
+/// Files of an export format.
 pub const FORMAT: &[Required] = &[Required {
     files: &["docs/formats.md", "docs/meshes.md", "docs/water.md"],
     texts: &["`.NAME`"],
     how: "add a row that describes it",
 }];
 
-/// Of a preset.
+/// Files of a preset.
 pub const PRESET: &[Required] = &[
     Required { files: &["golden/presets.txt"], texts: &["\nNAME "], how: BLESS },
     Required { files: &["docs/images/NAME.png"], texts: &[], how: GALLERY },
@@ -42,7 +42,7 @@ pub const PRESET: &[Required] = &[
     Required { files: &["docs/resolution.md"], texts: &["\n| NAME, "], how: "run `cargo xtask resolution`" },
 ];
 
-/// A line for everything that these names lack in the tree at `root`.
+/// A line for each thing that these names lack in the tree at `root`.
 pub fn find<'a>(root: &Path, places: &[Required], names: impl Iterator<Item = &'a str> + Clone) -> Result<Vec<String>> {
     let mut missing = Vec::new();
     for Required { files, texts, how } in places {

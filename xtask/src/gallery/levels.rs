@@ -8,7 +8,7 @@ use crate::shell;
 /// The cells of the pictures, in metres.
 const CELLS: [&str; 6] = ["7680", "960", "240", "60", "7.5", "0.9375"];
 
-/// The window of each picture: the origin of the preset `endless` lies in its middle.
+/// The window of each picture, with the origin of the preset `endless` in the middle.
 const WINDOW: &str = "-256,-256,512,512";
 
 /// A map sheet of a region with lakes.

@@ -5,15 +5,15 @@ use std::path::Path;
 use crate::failure::{Result, on_file};
 use crate::shell;
 
-/// Samples along a side of a preset's map, and of that on the start page of the studio.
+/// Samples along a side of a preset's map, and of its map on the start page of the studio.
 const SIZES: [&str; 2] = ["400", "150"];
 
 /// The window that is shaded, at the world's cell.
 fn part(preset: &str) -> &'static str {
     match preset {
-        // In its mountains.
+        // A window in its mountains.
         "continent" => "16824,23480,400,400",
-        // All of it.
+        // The whole world.
         "caves" => "0,0,384,384",
         _ => "100,100,400,400",
     }

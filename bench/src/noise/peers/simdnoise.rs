@@ -1,5 +1,5 @@
-//! simdnoise: whole pictures with SIMD up to AVX2, f32, always in a new buffer. Its only basis is simplex: it is
-//! compared with our Perlin fractals under that name, and no target refers to it.
+//! simdnoise: whole pictures with SIMD up to AVX2, f32, always in a new buffer. Its only basis is simplex. It is listed
+//! under this name next to our Perlin fractals, and no target refers to it.
 
 use simdnoise::{CellReturnType, NoiseBuilder};
 
