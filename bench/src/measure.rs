@@ -34,7 +34,7 @@ const AT_MOST: usize = 500;
 pub enum Clock {
     /// CPU time of the calling thread.
     Thread,
-    /// Wall time, for jobs with threads of their own. It includes the effect of other work on the machine.
+    /// Wall time, for jobs with their own threads. It includes the effect of other work on the machine.
     Wall,
 }
 

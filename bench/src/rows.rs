@@ -13,7 +13,7 @@ pub struct Target {
     pub or_rate: Option<f64>,
 }
 
-/// One case against one peer, or alone. Rates are in millions of samples per second.
+/// A case compared with a peer, or without a peer. Rates are in millions of samples per second.
 pub struct Row {
     /// The case.
     pub case: String,

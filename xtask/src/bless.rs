@@ -40,7 +40,7 @@ pub fn run(args: &[String]) -> Result {
     tests.args(named).env("OROGEN_BLESS", "1");
     let tested = shell::run(&mut tests);
     if tested.is_err() {
-        // The output of a failed run is discarded; the tests print what is wrong.
+        // The output of a failed run is discarded; the tests print the problems.
         replace(&golden, &before)?;
         return tested;
     }

@@ -13,7 +13,7 @@ each (default 60) or N executions, whichever comes first, starting with the file
 are written to fuzz/artifacts. Needs a C++ compiler for libFuzzer; cargo-fuzz is optional.
 ";
 
-/// Flags for coverage instrumentation (those of cargo-fuzz).
+/// Flags for coverage instrumentation, the same as in cargo-fuzz.
 const FLAGS: &str = "--cfg fuzzing -Zsanitizer=address -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
     -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
     -Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=1 -Cdebug-assertions";

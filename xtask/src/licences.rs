@@ -5,8 +5,8 @@ use serde_json::Value;
 use crate::failure::{Failure, Result};
 use crate::{output, shell};
 
-/// Accepted licences: permissive ones, MPL-2.0, which binds only its own files, and those of fonts that programs may
-/// contain.
+/// Accepted licences: permissive licences; MPL-2.0, which binds only its own files; and licences of fonts that programs
+/// may contain.
 const ACCEPTED: &[&str] = &[
     "0BSD",
     "Apache-2.0",

@@ -49,7 +49,7 @@ pub fn connect_errors(command: &mut Command) -> &mut Command {
     command.stderr(copy().unwrap_or_else(Stdio::inherit))
 }
 
-/// Prints what is appended to a log until `is_complete` holds and all of it is printed.
+/// Prints text that is appended to a log, until `is_complete` is set and everything is printed.
 pub fn follow(log: &Path, is_complete: &AtomicBool) {
     let Ok(mut file) = File::open(log) else { return };
     loop {

@@ -11,8 +11,8 @@ use crate::shell::{self, cargo, program, run as sh};
 /// out of a crate's folder, and missing files, therefore fail. Documents the libraries from the archives, too.
 ///
 /// `cargo package` itself would generate code for each crate and its dependencies. Here no code is generated, and
-/// profile, features and target folder are those of clippy, so that dependencies are not compiled again. The crates for
-/// windows and graphics cards are not compiled here, see [`check_window`].
+/// profile, features and target folder are the same as for clippy, so that dependencies are not compiled again. The
+/// crates for windows and graphics cards are not compiled here, see [`check_window`].
 pub fn check() -> Result {
     let folder = shell::target_dir().join("packages");
     // Removes archives of other versions.
@@ -28,8 +28,8 @@ pub fn check() -> Result {
     write_features(&unpacked, &crates)?;
     write_workspace(&unpacked, &crates)?;
     in_archives(&format!("check --quiet {LIBRARIES} --lib --bins"), "")?;
-    // Without the binary `orogen`, whose pages would overwrite those of the library of the same name, and without the
-    // studio.
+    // Without the binary `orogen`, whose pages would overwrite the pages of the library of the same name, and without
+    // the studio.
     let undocumented = "--exclude orogen-cli --exclude orogen-studio --exclude orogen-features";
     // Pages of items that no longer exist would remain.
     let pages = shell::target_dir().join("doc");

@@ -121,7 +121,7 @@ impl Run<'_> {
         }
     }
 
-    /// Counts a step as done; returns the line that says so.
+    /// Counts a step as done; returns the line to print.
     fn end(&self, step: &Step, seconds: String) -> String {
         let line = format!("    {} done in {seconds} s", step.name);
         self.done.lock().unwrap_or_else(PoisonError::into_inner).push(vec![step.name.to_owned(), seconds]);

@@ -1,4 +1,4 @@
-//! The ops that recipes may use: the built-in ones and those of the program.
+//! The ops that recipes may use: built-in ops and ops of the program.
 
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::{nearest, respelled, suggestion};
@@ -7,7 +7,7 @@ use orogen_ops::node::Node;
 use orogen_ops::op::OpType;
 use orogen_ops::registered::{check_name, namespace};
 
-/// The ops that recipes may use by their names: all built-in ones, and those that the program registers.
+/// The ops that recipes may use by their names: all built-in ops, and the ops that the program registers.
 ///
 /// A registry is a value. It reads recipes ([`Registry::read`], [`Registry::parse`]) and writes their
 /// [schema](crate::recipe::schema::json_schema_of) and [reference](crate::recipe::reference::markdown_of). Only texts
@@ -63,7 +63,7 @@ pub struct Registry {
 }
 
 impl Registry {
-    /// The built-in ops alone.
+    /// A registry with only the built-in ops.
     #[must_use]
     pub fn new() -> Registry {
         Registry::default()

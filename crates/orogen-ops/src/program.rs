@@ -158,7 +158,7 @@ impl Program {
 }
 
 impl<G> Program<G> {
-    /// The program with other grids in place of its own.
+    /// The program with its grids replaced.
     pub fn resolve<H>(self, grid: impl Fn(G) -> Result<H>) -> Result<Program<H>> {
         let Program { instructions, once, registers, coord_sets, outputs } = self;
         let instructions =

@@ -57,7 +57,7 @@ const TYPED: Targets =
 const CASES: &[Case] = &[
     Case { preset: "alpine", name: "alpine", land: Land::Any([0, 0]), targets: MOUNTAINS },
     Case { preset: "himalaya", name: "himalaya", land: Land::Whole(90), targets: MOUNTAINS },
-    // The origin lies in mountains; land elsewhere may be sea or plain.
+    // The origin is in mountains; land elsewhere may be sea or plain.
     Case { preset: "endless", name: "endless", land: Land::Any([-512, -512]), targets: ENDLESS },
     // 10 000 km from the origin, across the borders of the tiles of all levels.
     Case { preset: "endless", name: "endless, 10 000 km out", land: Land::Highest([FAR, -FAR]), targets: ENDLESS },

@@ -23,7 +23,7 @@ pub fn write(images: &Path, work: &Path) -> Result {
     let drawing = export("water.svg", &["--layer", "rivers,lakes,watersheds,summits"])?;
     let drawing = String::from_utf8(drawing).map_err(|_| Failure::new("the drawing is not UTF-8"))?;
     let Some((head, body)) = drawing.split_once('\n') else { return Err(Failure::new("the drawing has no lines")) };
-    // Coordinates of lines start at the center of the first sample, those of pictures at its corner.
+    // Coordinates of lines start at the center of the first sample, coordinates of pictures at its corner.
     let [_, _, columns, rows] = WINDOW.map(|samples| samples * CELL);
     let corner = CELL / 2;
     let source = base64(&shade);

@@ -257,7 +257,7 @@ impl<'a> Engine<'a> {
         Evaluators::new(program, &self.resolved.world_params, |node| self.field(node))
     }
 
-    /// Runs `work` with what the instructions of a program refer to.
+    /// Runs `work` with the data that the instructions of a program refer to.
     pub(super) fn bound<T>(
         &self,
         evaluators: &Evaluators,

@@ -16,8 +16,8 @@ use orogen_ops::op::{Op, Solution};
 use std::sync::Arc;
 
 impl Engine<'_> {
-    /// The solutions that a plan's steps read: found in the store, or computed after those that their sources read.
-    /// Solvers that only a stored solution would read are skipped.
+    /// The solutions that a plan's steps read. They are found in the store, or computed after the solutions that their
+    /// sources read. Solvers that only a stored solution would read are skipped.
     pub(super) fn solve(&self, plan: &Plan) -> Result<Solutions> {
         let mut wanted = plan.solvers_read();
         let (mut there, mut missing) = (Solutions::new(), Vec::new());

@@ -1,4 +1,4 @@
-//! The samples of one lattice around those of another.
+//! The samples of one lattice around the samples of another.
 
 use orogen_grid::grid::{FARTHEST, Window};
 use orogen_grid::resample::split;

@@ -22,7 +22,7 @@ use std::collections::{HashMap, HashSet};
 /// Maximum number of instructions of a program. Only nested warps multiply them.
 const MAX_INSTRUCTIONS: usize = 1 << 20;
 
-/// What a program is compiled from.
+/// The input of a compilation.
 #[derive(Clone, Copy)]
 pub struct Scope<'a> {
     pub resolved: &'a ResolvedRecipe,

@@ -50,7 +50,7 @@ impl CoordSets {
         to
     }
 
-    /// The four coordinate sets of a stencil around another one; `emit` gets the instructions of those that are new.
+    /// The four coordinate sets of a stencil around another one; `emit` gets the instructions of new ones.
     pub fn around(
         &mut self,
         stencil: &Stencil,

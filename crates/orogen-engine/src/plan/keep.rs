@@ -5,7 +5,7 @@ use orogen_ops::ids::{Id, NodeId};
 use orogen_ops::op::Op;
 use std::collections::{HashMap, HashSet};
 
-/// What the programs of a plan evaluate at the block itself, where a grid could be read instead.
+/// The nodes that the programs of a plan evaluate at the block itself, where a grid could be read instead.
 #[derive(Debug, Default)]
 pub struct Evaluations {
     /// Nodes whose result is a grid anyway, because a filter reads it.

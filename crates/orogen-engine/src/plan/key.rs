@@ -65,9 +65,9 @@ fn put_link(hash: &mut Sha256, link: &Link, keys: &IndexVec<NodeId, Key>) {
     }
 }
 
-/// Adds what a node reads of the world: the seed, if the node has a seed; the extent and the solvers' lattice, if the
-/// node depends on the whole world or on its edges; the cell at which a field's source is computed; the sea level, if
-/// the op declares it.
+/// Adds the properties of the world that a node reads: the seed, if the node has a seed; the extent and the solvers'
+/// lattice, if the node depends on the whole world or on its edges; the cell at which a field's source is computed; the
+/// sea level, if the op declares it.
 fn put_world(hash: &mut Sha256, node: &Node, world: &WorldParams) {
     let mut put = |number: Option<u64>| {
         hash.update([u8::from(number.is_some())]);

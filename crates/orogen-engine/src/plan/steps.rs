@@ -101,7 +101,8 @@ pub enum Step<G = GridId> {
     Refine {
         /// The node.
         node: NodeId,
-        /// The grids of its inputs at each level from the coarsest, each covering at least what the level reads.
+        /// The grids of its inputs at each level from the coarsest, each covering at least the samples that the level
+        /// reads.
         inputs: Vec<Vec<Option<G>>>,
         /// The window.
         window: Window,
@@ -128,7 +129,7 @@ pub struct GridSlot {
 }
 
 impl<G> Step<G> {
-    /// The step with other grids in place of those that it reads.
+    /// The step with other grids in place of its inputs.
     pub(super) fn resolve<H>(self, grid: impl Fn(G) -> Result<H>) -> Result<Step<H>> {
         Ok(match self {
             Step::Fill { program, window, out } => Step::Fill { program: program.resolve(grid)?, window, out },

@@ -47,7 +47,7 @@ pub struct Graph {
     pub links: IndexVec<NodeId, Vec<Link>>,
     /// The mask of each node.
     pub masks: IndexVec<NodeId, Link>,
-    /// The nodes in an order where every node comes after those that it reads.
+    /// The nodes in an order where every node comes after the nodes that it reads.
     pub order: Vec<NodeId>,
     /// The targets of the outputs, in the recipe's order.
     pub outputs: Vec<Link>,
@@ -71,7 +71,7 @@ pub enum At {
 pub struct GraphDiagnostic {
     /// Its position.
     pub at: At,
-    /// The message: what is wrong, and what to do.
+    /// The message, with the problem and advice.
     pub message: String,
 }
 
@@ -115,8 +115,8 @@ impl Graph {
         Ok(graph)
     }
 
-    /// Finds the nodes that depend on the altitude. Only fields may read them: what is computed on a grid has one
-    /// result for all altitudes.
+    /// Finds the nodes that depend on the altitude. Only fields may read them, because a grid has one result for all
+    /// altitudes.
     fn find_altitude(&mut self, recipe: &Recipe) -> Result<(), Vec<GraphDiagnostic>> {
         let mut diagnostics = Vec::new();
         for &id in &self.order {

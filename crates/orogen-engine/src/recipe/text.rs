@@ -25,7 +25,8 @@ impl Text<'_> {
         Error::from_diagnostics(ErrorKind::Recipe, vec![self.diagnostic(span, message)])
     }
 
-    /// An error of several diagnostics: in the order of the text, then those of other texts, then the number of `more`.
+    /// An error of several diagnostics: in the order of the text, then diagnostics of other texts, then the number of
+    /// `more`.
     pub fn errors(&self, mut diagnostics: Vec<Diagnostic>, elsewhere: Vec<Diagnostic>, more: usize) -> Error {
         diagnostics.sort_by_key(|diagnostic| diagnostic.place.as_ref().map(|place| (place.line, place.column)));
         diagnostics.extend(elsewhere);

@@ -3,8 +3,8 @@
 //! An entry is a file named by the hash of its key: the content key, for a tile the level and its window, and the
 //! version of this library. It is written atomically and verified completely when it is read; a damaged entry is
 //! computed again. Reading makes an entry the most recent one; if the folder exceeds its limit, the oldest entries are
-//! removed. Several processes may share a folder: a file that one of them removes stays readable for those that have it
-//! open.
+//! removed. Several processes may share a folder: a file that one of them removes stays readable for processes that
+//! have it open.
 
 use super::solution_store::{Entry, EntryKey, SolutionStore};
 use orogen_io::file;

@@ -101,7 +101,7 @@ impl LevelTiles {
         self.made.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Number of tiles made so far, without those that were found.
+    /// Number of tiles made so far, without reused ones.
     pub fn made(&self) -> u64 {
         self.made.load(Ordering::Relaxed)
     }

@@ -40,7 +40,7 @@ impl World {
     }
 
     /// Makes a layer over a window that may extend beyond the world by the margin of its solvers; the caller holds
-    /// another `beside` bytes.
+    /// another `beside` bytes of memory.
     ///
     /// # Errors
     /// The errors of [`World::plan`] and [`World::run`].

@@ -41,7 +41,7 @@ fn difference(expected: &[Grid], made: &[Grid]) -> Difference {
         pairs.filter(|(a, b)| is_off(**a, **b)).count() as f64 / samples
     };
     let (low, high) = expected[HEIGHT].data().iter().fold((f32::MAX, f32::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
-    // A single sample has no range of its own.
+    // The range of a single sample is 0.
     let range = if samples > 1.0 { (high - low).max(1.0) } else { high.abs().max(1.0) };
     let apart = |plane: usize| {
         assert_eq!(expected[plane].window(), made[plane].window());

@@ -310,7 +310,7 @@ fn a_low_limit_gives_the_same_picture() {
     assert!(draw(&bands).unwrap().unwrap() == expect);
     let error = draw(&limited(scene_bytes as u64)).unwrap_err().to_string();
     assert!(error.contains("a buffer has at most"), "{error}");
-    // Some rows alone.
+    // Only some rows.
     let rows = render(&gpu, &scene, &camera, case.size, 13..21, |_| false).unwrap().unwrap();
     assert!(rows == expect[3 * 100 * 13..3 * 100 * 21]);
     assert_eq!(gpu.shaders_compiled(), 1);

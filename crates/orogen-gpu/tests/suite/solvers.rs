@@ -21,7 +21,7 @@ use std::time::Instant;
 fn differences(expected: &Grid, made: &Grid) -> [f64; 3] {
     let finite = expected.data().iter().filter(|v| v.is_finite());
     let (low, high) = finite.fold((f32::MAX, f32::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
-    // Almost level ground has no range of its own.
+    // The range of almost level ground is too small.
     let range = (f64::from(high) - f64::from(low)).max(0.1 * expected.window().cell);
     let (mut squares, mut worst, mut far) = (0.0, 0.0f64, 0usize);
     for (a, b) in expected.data().iter().zip(made.data()) {

@@ -7,7 +7,7 @@ use crate::value::Span;
 pub struct ExpressionError {
     /// Position in the text, in bytes.
     pub span: Span,
-    /// The message: what is wrong, and what to do.
+    /// The message, with the problem and advice.
     pub message: String,
 }
 

@@ -111,7 +111,7 @@ fn what_is_too_large_is_refused_quickly() {
         let fault = expression.error().unwrap();
         assert!(fault.message.contains(expect), "{}", fault.message);
     }
-    // Equal terms are computed once, so the length alone is no error.
+    // Equal terms are computed once, so a long expression is not necessarily an error.
     assert!(Expression::from(wide("a", 30_000).as_str()).error().is_some());
     assert!(Expression::from(wide("a*b", 1000).as_str()).error().is_none());
     assert!(Expression::from(("(".repeat(MAX_DEPTH) + "1" + &")".repeat(MAX_DEPTH)).as_str()).error().is_none());

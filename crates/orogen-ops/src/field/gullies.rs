@@ -94,7 +94,7 @@ shader_constants! {
     // Words before the octaves, after their number.
     GULLIES_PER_DIFFERENCE = 1, GULLIES_ONSET = 2, GULLIES_ASSUMED = 3, GULLIES_WEIGHT = 4, GULLIES_DETAIL = 5,
     GULLIES_SHARPNESS = 6, GULLIES_OCTAVES = 7,
-    // Words of an octave, after those of its noise.
+    // Words of an octave, after the words of its noise.
     GULLIES_DEPTH = 6, GULLIES_TURN = 7, GULLIES_OCTAVE = 8
 }
 

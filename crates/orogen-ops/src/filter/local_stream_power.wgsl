@@ -1,5 +1,5 @@
 // Stream power with local rules: an iteration of orogen-grid's `erosion/local_stream_power.rs` as two passes. The
-// numbers are those of its `Constants`.
+// numbers are the fields of its `Constants`.
 //
 // The lower eight bits of `frame.step` are the plane of heights that is read, the next eight bits the plane that is
 // written.

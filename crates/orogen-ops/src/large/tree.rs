@@ -31,7 +31,7 @@ impl Sets {
         at
     }
 
-    /// Joins two sets; the first one's representative stands for both. False if they were the same set.
+    /// Joins two sets; the representative of the first set represents both. Returns false if they were the same set.
     pub fn join(&mut self, a: u32, b: u32) -> bool {
         let (a, b) = (self.find(a), self.find(b));
         self.parents[b as usize] = a;

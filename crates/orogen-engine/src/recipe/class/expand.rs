@@ -13,7 +13,7 @@ use orogen_ops::solver::SelectShare;
 /// world does this. Shares are exact at the world's cell.
 ///
 /// # Errors
-/// If the recipe has classes and no output `height`, or an output `class` of its own.
+/// If the recipe has classes but no output `height`, or if it has its own output `class`.
 pub fn expand(recipe: &mut Recipe) -> Result<()> {
     let codes: Vec<u8> = (0..=u8::MAX).take(recipe.classes().len()).collect();
     expand_at(recipe, 0.0, &codes)

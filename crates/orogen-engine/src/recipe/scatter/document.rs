@@ -49,7 +49,7 @@ pub enum Turn {
     Fixed(f64),
 }
 
-/// Whether objects stand in the sea and in the recipe's lakes.
+/// Whether objects are placed in the sea and in the recipe's lakes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InWater {
     /// Only on land.

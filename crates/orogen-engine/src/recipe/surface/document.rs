@@ -11,7 +11,7 @@ use orogen_ops::declare::Input;
 /// Maximum number of surfaces of a recipe.
 pub const MAX_SURFACES: usize = 64;
 
-/// Default roughness: that of soil and plants.
+/// Default roughness, as of soil and plants.
 pub const DEFAULT_ROUGHNESS: f64 = 0.9;
 
 table! {

@@ -14,7 +14,7 @@
 use super::document::{Along, Coloring, Condition, Quantity, Surface};
 use orogen_io::palette::color::rgb;
 
-/// The snow line in metres above the sea: about that of the Alps.
+/// The snow line in metres above the sea, about as in the Alps.
 const SNOW_LINE: f64 = 2600.0;
 
 /// Distance of the heights for curvature, in metres.

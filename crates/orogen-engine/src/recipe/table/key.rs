@@ -10,7 +10,7 @@ pub struct Key<'k> {
     pub text: Option<bool>,
     /// The name of two numbers in messages, such as `[WIDTH, HEIGHT]`.
     pub pair: Option<&'k str>,
-    /// Whether one number may stand for both.
+    /// Whether one number may be given for both.
     pub single: Option<bool>,
     /// Whether the first of two numbers must not be greater than the second.
     pub ascending: Option<bool>,

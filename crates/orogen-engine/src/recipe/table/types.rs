@@ -78,7 +78,7 @@ impl OfKey for u32 {
     }
 }
 
-/// Two numbers, or one that stands for both.
+/// Two numbers, or one number for both.
 impl OfKey for [f64; 2] {
     fn schema(key: &Key) -> Json {
         let one = f64::schema(key);

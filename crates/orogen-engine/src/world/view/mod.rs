@@ -50,7 +50,7 @@ impl View {
 
     /// The requested window: a part, or the whole world. A world of length L has round(L / cell) samples. For an
     /// unbounded world it starts at the origin and has the default size. A world that is too large for its own cell is
-    /// shown as a whole with a larger one, and `note` gets a remark that says so.
+    /// shown as a whole at a larger cell, and `note` gets a remark about it.
     ///
     /// # Errors
     /// If the part is not inside the world or has no sample, the size has another aspect ratio, or the world cannot

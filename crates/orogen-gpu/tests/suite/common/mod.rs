@@ -77,7 +77,7 @@ pub fn difference(exact: &Grid, made: &Grid) -> Difference {
     assert_eq!(exact.window(), made.window());
     let finite = || exact.data().iter().filter(|sample| sample.is_finite());
     let range = finite().copied().fold(f32::MIN, f32::max) - finite().copied().fold(f32::MAX, f32::min);
-    // Flat land has no range of its own.
+    // The range of flat land is 0.
     let range =
         if range > 0.0 { range } else { finite().copied().fold(1.0, |most: f32, sample| most.max(sample.abs())) };
     let (mut worst, mut squares, mut beyond) = (0.0f32, 0.0f64, 0usize);

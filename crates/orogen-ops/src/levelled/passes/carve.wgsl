@@ -157,9 +157,9 @@ fn carve(base: u32, at: vec2<i32>) {
     }
 }
 
-// Keeps areas between those of a node and its donors. Water that has spread drains to the adjacent water that it came
-// from, if that water drains. The lower eight bits of `frame.step` are the plane of areas that is read, the next eight
-// bits the plane that is written.
+// Keeps areas between the area of a node and the areas of its donors. Water that has spread drains to the adjacent
+// water that it came from, if that water drains. The lower eight bits of `frame.step` are the plane of areas that is
+// read, the next eight bits the plane that is written.
 fn bound_areas(base: u32, at: vec2<i32>) {
     let parent = at / 2;
     let areas = frame.step & 0xffu;
