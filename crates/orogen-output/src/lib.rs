@@ -1,10 +1,10 @@
-//! What is made of Orogen's terrains: pictures, sheets, meshes, blocks and reports.
+//! Outputs made from Orogen's terrains: pictures, sheets, meshes, blocks and reports.
 //!
 //! - [`map`]: colors on the ground, shaded relief.
 //! - [`sheet`]: map sheets with contours, grid, scale and legend, as PNG, SVG and PDF.
 //! - [`render`]: perspective pictures with sky, water and shadows.
 //! - [`mesh`]: triangles of a grid, as GLB, OBJ, PLY, STL and 3MF.
-//! - [`survey`]: a terrain in numbers, beside what real land is like.
+//! - [`survey`]: statistics of a terrain, compared with real land.
 //! - [`tilemap`]: tiles and their pictures.
 //! - [`blocks`]: worlds of blocks, for block games and voxel editors.
 #![forbid(unsafe_code)]

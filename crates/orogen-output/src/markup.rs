@@ -2,17 +2,17 @@
 
 use std::io::{self, Write};
 
-/// Text without control characters, with the characters escaped that begin markup.
+/// Removes control characters from text and escapes the characters that begin markup.
 #[must_use]
 pub fn escaped(text: &str) -> String {
     let text: String = text.chars().filter(|letter| !letter.is_control()).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Writes what is written to it as base64 (RFC 4648).
+/// A writer that encodes its input as base64 (RFC 4648).
 pub struct Base64<'a> {
     out: &'a mut dyn Write,
-    /// Up to two bytes that wait for a third.
+    /// Up to two bytes that do not yet form a group of three.
     rest: [u8; 3],
     waiting: usize,
     text: Vec<u8>,
@@ -23,7 +23,7 @@ impl<'a> Base64<'a> {
         Base64 { out, rest: [0; 3], waiting: 0, text: Vec::new() }
     }
 
-    /// Writes the bytes that wait, and the padding.
+    /// Writes the remaining bytes and the padding.
     pub fn finish(mut self) -> io::Result<()> {
         if self.waiting > 0 {
             let mut letters = letters(self.rest);
@@ -67,7 +67,7 @@ impl Write for Base64<'_> {
     }
 }
 
-/// The four letters of three bytes.
+/// The base64 characters for three bytes.
 fn letters([a, b, c]: [u8; 3]) -> [u8; 4] {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let bits = u32::from(a) << 16 | u32::from(b) << 8 | u32::from(c);

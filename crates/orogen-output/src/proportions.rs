@@ -1,23 +1,24 @@
-//! Whether land is so steep as a whole that a picture or a model of it shows nothing: usually heights in another unit
-//! than lengths.
+//! Checks whether land is so steep as a whole that a picture or model of it is useless. The usual cause is that heights
+//! and lengths have different units.
 
 use orogen_grid::words::number;
 
-/// Ratio of height to width from which land is too high, and the one that is advised. Of real mountains it is below .2.
+/// Ratio of relief to width above which land is too high, and the ratio that is advised. Real mountains are below 0.2.
 const MOST: f64 = 1.0;
 const GOOD: f64 = 0.25;
 
-/// The smallest exaggeration that pictures and models may have.
+/// Minimum exaggeration that the warning advises.
 const LEAST: f64 = 0.01;
 
-/// A warning if land of this relief and width in metres is too high with its exaggeration: the one to use.
+/// A warning that advises an exaggeration, if land with this relief and width in metres is too high with its current
+/// exaggeration; `None` otherwise.
 #[must_use]
 pub fn warning(relief: f64, width: f64, exaggeration: f64) -> Option<String> {
     let ratio = relief * exaggeration / width;
     if !ratio.is_finite() || ratio <= MOST {
         return None;
     }
-    // Two digits.
+    // Rounded to two digits.
     let advised = (GOOD * width / relief).max(LEAST);
     let step = libm::pow(10.0, libm::log10(advised).floor() - 1.0);
     let advised = (advised / step).round() * step;

@@ -1,6 +1,6 @@
-//! Caves in any land: winding tubes below its surface, as an output `density`.
+//! Caves in any land: winding tubes below its surface, added to a recipe as an output `density`.
 //!
-//! They are nodes of the recipe, so they are the same in every part of the world, at one size of blocks.
+//! They are nodes of the recipe, so for one size of blocks they are the same in every part of the world.
 
 use super::density::DENSITY;
 use orogen_engine::Recipe;
@@ -13,26 +13,26 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 /// Levels below the lowest ground that leave room for caves.
 pub const BELOW: u32 = 48;
 
-/// Wavelength of the tubes and of the areas where they open to the surface, in blocks, and how much flatter than wide
-/// the tubes wind.
+/// Wavelength of the tubes, wavelength of the areas where they open to the surface (both in blocks), and the vertical
+/// scale of the tubes relative to the horizontal one.
 const WAVELENGTH: f64 = 60.0;
 const OPENINGS: f64 = 90.0;
 const FLATTENED: f64 = 0.7;
 
-/// Distance from water, in blocks, below which there is no cave, and from which they are as wide as elsewhere. Density
-/// is sampled at every fourth column, so less than six blocks would reach into the columns of water.
+/// Distances from water, in blocks: caves start at the first one and have their full width from the second one on.
+/// Density is sampled at every fourth column, so with less than six blocks caves would reach into columns of water.
 const DRY: [f64; 2] = [7.0, 14.0];
 
-/// Depth of the lowest caves, in blocks: where they become narrow, and where they end.
+/// Depths in blocks at which caves start to become narrower, and at which they end.
 const DEEP: [f64; 2] = [32.0, 44.0];
 
-/// Depth of the roof where caves do not open to the surface, in blocks.
+/// Thickness of the roof above caves that do not open to the surface, in blocks.
 const ROOF: [f64; 2] = [2.0, 7.0];
 
-/// Adds caves to a recipe whose blocks are of `cell` metres and whose columns have a class.
+/// Adds caves to a recipe. `cell` is the size of a block in metres; every column of the world needs a class.
 ///
 /// # Errors
-/// If the recipe has no output `height` or `class`, or a density of its own.
+/// If the recipe has no output `height` or `class`, or already has an output `density`.
 pub fn add(recipe: &mut Recipe, cell: f64) -> Result<()> {
     let input =
         |name: &str| recipe.output_inputs().iter().find(|(output, _)| output == name).map(|(_, input)| input.clone());
@@ -69,7 +69,7 @@ pub fn add(recipe: &mut Recipe, cell: f64) -> Result<()> {
         recipe.add(name, Fbm { seed, wavelength, octaves: 2, vertical: FLATTENED, ..Fbm::default() });
     }
     recipe.add(&openings, Fbm { seed: 3, wavelength: OPENINGS * cell, octaves: 2, ..Fbm::default() });
-    // 1 in the middle of a tube, where two noises are near 0 together, and 0 beside it.
+    // 1 in the middle of a tube, where two noises are near 0 at the same time, and 0 outside of it.
     let [deep, deepest] = DEEP.map(|blocks| blocks * cell);
     let [thin, thick] = ROOF.map(|blocks| blocks * cell);
     let carved = Expr::new(&format!(
@@ -86,7 +86,7 @@ pub fn add(recipe: &mut Recipe, cell: f64) -> Result<()> {
     recipe.add(&tubes, carved);
     let above = Expr::new("height - altitude").with("height", height).with("altitude", altitude.as_str());
     recipe.add(&ground, above);
-    // Free in the middle of a tube, however deep it is.
+    // Open in the middle of a tube at any depth.
     let room = 8.0 * cell;
     let carve = Expr::new(&format!("ground - tubes * (max(ground, 0) + {room})"))
         .with("ground", ground.as_str())

@@ -14,20 +14,20 @@ use orogen_grid::grid::Window;
 /// Columns along a side of a chunk.
 pub const SIDE: usize = 16;
 
-/// How far below the ground, in blocks, open space fills with water.
+/// How far below the ground, in blocks, open space is filled with water.
 const WATER_REACH: i32 = 4;
 
-/// Ores: the block, the share of places with a vein, and the least depth below the ground in blocks.
+/// Ores: the block, the share of veins (0 to 1), and the minimum depth below the ground in blocks.
 const ORES: [(Block, f64, i32); 3] = [(Block::Coal, 0.012, 4), (Block::Iron, 0.008, 12), (Block::Gold, 0.003, 28)];
 
-/// The share of blocks of a vein that are ore.
+/// Share of the blocks of a vein that are ore, in quarters.
 const RICH: u64 = 3;
 
 impl Land {
-    /// The blocks of a part of the window, as numbers of kinds: level by level from the bottom, in each row by row from
-    /// the north.
+    /// The blocks of a part of the window, as numbers of kinds: level by level from the bottom, each level row by row
+    /// from the north.
     ///
-    /// They are the same in any land that contains the part, whatever its levels.
+    /// They are the same in any land that contains the part, whatever the levels of that land.
     ///
     /// # Errors
     /// If the part is not in the window.
@@ -62,7 +62,7 @@ pub(super) fn fill(land: &Land, part: &Window) -> Vec<u8> {
                 && (0..levels.count as i64).contains(&z);
             if is_inside {
                 let there = &mut blocks[z as usize * layer + y as usize * part.width + x as usize];
-                // Of two crowns that meet, logs stay.
+                // Where two crowns meet, logs are kept.
                 if *there == Block::Air as u8
                     || block == Block::Log && *there != Block::Log as u8 && *there >= Block::Leaves as u8
                 {
@@ -74,7 +74,7 @@ pub(super) fn fill(land: &Land, part: &Window) -> Vec<u8> {
     blocks
 }
 
-/// Calls a function for each block of a column that is not air, from the top. Trees are not among them.
+/// Calls a function for each block of a column that is not air, from the top. Trees are not included.
 fn each<'a>(land: &'a Land, at: [i64; 2], solid: &mut Solid<'a>, mut visit: impl FnMut(i32, Block)) {
     let Some(column) = land.column(at[0], at[1]) else { return };
     if column.height.is_nan() {
@@ -83,7 +83,7 @@ fn each<'a>(land: &'a Land, at: [i64; 2], solid: &mut Solid<'a>, mut visit: impl
     let (levels, cell) = (land.levels, land.window.cell);
     let ground = column.ground(cell);
     solid.begin(land, column, at);
-    // Levels down to the surface of the water below the highest one, then what is solid and what is not.
+    // Counters from the top: depth below the current surface, open levels above it, and levels of water.
     let (mut depth, mut free, mut water) = (0, CEILING, 0);
     let mut has_soil = false;
     for level in (levels.bottom..levels.top() + ABOVE).rev() {
@@ -108,14 +108,14 @@ fn each<'a>(land: &'a Land, at: [i64; 2], solid: &mut Solid<'a>, mut visit: impl
     }
 }
 
-/// The depth of the water above a surface, in blocks: 0 if there is none, otherwise as it follows from the water's
-/// level, whatever the levels that were counted.
+/// The depth of the water above a surface, in blocks: 0 if `counted` is 0, otherwise at least 1, computed from the
+/// water level instead of from the counted levels.
 fn water_above(counted: i32, surface: i32, column: &Column, cell: f64) -> i32 {
     if counted == 0 { 0 } else { (Levels::of(f64::from(column.water), cell) - surface).max(1) }
 }
 
 impl Column {
-    /// A block of the soil, `depth` blocks below the surface; `None` below the soil.
+    /// The block of the soil `depth` blocks below the surface; `None` below the soil.
     fn block(&self, depth: i32, water: i32, at: [i64; 2], seed: u64) -> Option<Block> {
         // Rocks that rise out of the water are bare.
         let cover = match self.cover {

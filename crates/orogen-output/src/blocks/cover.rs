@@ -9,11 +9,11 @@ use orogen_grid::climate::biomes::scheme::Scheme;
 pub enum Cover {
     /// The floor of the sea and of lakes.
     Bed,
-    /// Sand above sandstone, at the water.
+    /// Sand above sandstone, at the shore.
     Beach,
-    /// Grass above dirt, with a tree here and there.
+    /// Grass above dirt, with few trees.
     Meadow,
-    /// The same, wooded.
+    /// Grass above dirt, with many trees.
     Forest,
     /// Stone.
     Rock,
@@ -23,7 +23,7 @@ pub enum Cover {
     Desert,
     /// Dry grass above dirt, with few trees.
     Steppe,
-    /// Needles on the ground, wooded with conifers.
+    /// Needles on the ground, with many conifers.
     Taiga,
     /// Snow above ice.
     Glacier,
@@ -36,24 +36,25 @@ const SHALLOW: i32 = 7;
 pub const MAX_THICKNESS: i32 = 6;
 
 impl Cover {
-    /// The covers of the [standard classes](orogen_engine::recipe::class::standard) of terrain, by their number.
+    /// The covers of the [standard classes](orogen_engine::recipe::class::standard) of terrain, indexed by class
+    /// number.
     pub const OF_CLASSES: [Cover; 6] =
         [Cover::Bed, Cover::Beach, Cover::Meadow, Cover::Forest, Cover::Rock, Cover::Snow];
 
-    /// The cover of this ground in a biome: water, beaches and rock are the same in all of them.
+    /// The cover of this ground in a biome. Water, beaches and rock are the same in all biomes.
     #[must_use]
     pub fn in_biome(self, scheme: Scheme, code: u8) -> Cover {
         let is_bare = matches!(self, Cover::Bed | Cover::Beach | Cover::Rock);
         if is_bare || code == 0 { self } else { of_biome(scheme, code) }
     }
 
-    /// The block of a column `depth` blocks below its surface (0: the surface itself), in a soil; `None` below the
-    /// soil. `water` is the depth of the water above the surface, in blocks.
+    /// The block `depth` blocks below the surface of a column (0 is the surface itself); `None` below the soil. `water`
+    /// is the depth of the water above the surface, in blocks.
     #[must_use]
     pub fn block(self, depth: i32, water: i32, [x, y]: [i64; 2], seed: u64) -> Option<Block> {
         let uneven = (hash(seed ^ 0x51, [x, y, 0]) & 1) as i32;
         let layers: &[(Block, i32)] = match self {
-            // What is below water is a floor, whatever the class of its column.
+            // The ground below water is a floor, whatever the class of its column.
             Cover::Bed | Cover::Meadow | Cover::Forest | Cover::Steppe | Cover::Taiga | Cover::Beach if water > 0 => {
                 let patch = hash(seed ^ 0x52, [(x + 3 * i64::from(uneven)) >> 3, (y - i64::from(uneven)) >> 3, 0]);
                 match (water < SHALLOW, patch % 16) {
@@ -72,7 +73,7 @@ impl Cover {
             Cover::Glacier => &[(Block::Snow, 1), (Block::Ice, 4)],
             Cover::Rock => &[],
         };
-        // The soil is a block thinner here and there, except for its surface.
+        // The soil is one block thinner in places; its surface block never changes.
         let mut below = if depth > 0 { depth + uneven } else { 0 };
         for (block, thickness) in layers {
             if below < *thickness {
@@ -83,7 +84,7 @@ impl Cover {
         None
     }
 
-    /// The share of places for a tree that have one, and whether it is a conifer.
+    /// The share of tree positions that have a tree (0 to 1), and whether the trees are conifers; `None` without trees.
     #[must_use]
     pub fn trees(self) -> Option<(f64, bool)> {
         match self {

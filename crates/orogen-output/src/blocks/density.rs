@@ -1,6 +1,6 @@
-//! The shape of the ground in space: what the output `density` of a recipe adds to its heights.
+//! The shape of the ground in space: what the output `density` of a recipe adds to the heights.
 //!
-//! The density less the distance to the ground, density - (height - altitude), is sampled at every fourth column, row
+//! The density minus the depth below the ground, density - (height - altitude), is sampled at every fourth column, row
 //! and level of the world and interpolated linearly between them. So the ground keeps the detail of its heights, and a
 //! chunk needs few samples in space.
 
@@ -15,20 +15,20 @@ use orogen_grid::progress::Progress;
 /// The output with the density of the ground in space, in metres: solid where it is above 0.
 pub const DENSITY: &str = "density";
 
-/// Blocks from a sample to the next.
+/// Distance between samples, in blocks.
 pub const STEP: i64 = 4;
 
-/// Maximum number of samples that are made at once.
+/// Maximum number of samples that are computed at once.
 const AT_ONCE: usize = 1 << 20;
 
-/// Offsets of the density over a part of the world.
+/// Density offsets over a part of the world.
 #[derive(Debug)]
 pub(super) struct Offsets {
-    /// The samples of the plane: their column and row in the world are multiples of [`STEP`].
+    /// The horizontal samples; their column and row in the world are multiples of [`STEP`].
     nodes: Window,
-    /// The number of the lowest sample of a column: its level is that times [`STEP`].
+    /// The index of the lowest sample of a column; its level is the index times [`STEP`].
     lowest: i64,
-    /// Samples of a column.
+    /// Samples per column.
     count: usize,
     /// The offsets, column by column, each from the bottom.
     offsets: Vec<f32>,
@@ -36,8 +36,7 @@ pub(super) struct Offsets {
 }
 
 impl Offsets {
-    /// The offsets over a window of columns and a range of levels, of a density in land whose altitudes are
-    /// exaggerated.
+    /// The offsets over a window of columns and a range of levels, for a density in land with exaggerated altitudes.
     ///
     /// Fails if the layers cannot be made, or `progress` is cancelled.
     pub(super) fn of(
@@ -69,7 +68,7 @@ impl Offsets {
                 let samples = densities.slice(k).iter().zip(heights.iter().flat_map(|grid| grid.data()));
                 for (at, (density, height)) in samples.enumerate() {
                     let offset = exaggeration * (f64::from(*density) - (f64::from(*height) - altitude));
-                    // Where there is no density the ground is as it is.
+                    // Where the density is missing, the offset is 0.
                     offsets[(top * nodes.width + at) * count + k] =
                         if offset.is_finite() { offset as f32 } else { 0.0 };
                 }

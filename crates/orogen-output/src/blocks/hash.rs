@@ -2,7 +2,7 @@
 
 use orogen_grid::random::mix64;
 
-/// A number of a position, the same on every machine.
+/// A hash of a position, the same on every machine.
 #[inline]
 #[must_use]
 pub(super) fn hash(seed: u64, [x, y, z]: [i64; 3]) -> u64 {
@@ -11,7 +11,7 @@ pub(super) fn hash(seed: u64, [x, y, z]: [i64; 3]) -> u64 {
     mix64(column ^ (z as u64).wrapping_mul(0x1656_67B1_9E37_79F9))
 }
 
-/// The upper bits of a number as a share from 0 to 1, less than 1.
+/// The upper bits of a hash as a number from 0 to 1, excluding 1.
 #[inline]
 #[must_use]
 pub(super) fn share(hash: u64) -> f64 {

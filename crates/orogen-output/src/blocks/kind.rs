@@ -1,6 +1,6 @@
 //! The kinds of blocks.
 
-/// A kind of block. Files hold its number.
+/// A kind of block. Files store its number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 #[allow(missing_docs, reason = "the names say it")]
@@ -26,18 +26,19 @@ pub enum Block {
     Needles,
 }
 
-/// What a kind of block is in files.
+/// How a kind of block is represented in files.
 #[derive(Debug, Clone, Copy)]
 pub struct BlockKind {
     /// The kind.
     pub block: Block,
-    /// Its name in texts, and after `orogen_blocks:` in Luanti.
+    /// Its name in texts, and its node name after `orogen_blocks:` in Luanti.
     pub name: &'static str,
     /// Its color, sRGB.
     pub color: [u8; 3],
     /// Its block state in Minecraft: Java Edition.
     pub minecraft: &'static str,
-    /// The nodes of Luanti games that are taken for it, the first that exists; otherwise it is drawn as its color.
+    /// Equivalent nodes of Luanti games, in order of preference: the first that exists is used, otherwise a node of
+    /// this color.
     pub luanti: &'static [&'static str],
 }
 
@@ -51,7 +52,7 @@ const fn kind(
     BlockKind { block, name, color, minecraft, luanti }
 }
 
-/// All kinds, in the order of their numbers.
+/// All kinds, indexed by their numbers.
 pub const KINDS: [BlockKind; 19] = [
     kind(Block::Air, "air", [255, 255, 255], "minecraft:air", &[]),
     kind(
@@ -135,13 +136,13 @@ pub const KINDS: [BlockKind; 19] = [
 ];
 
 impl Block {
-    /// The kind with a number; air if there is none.
+    /// The kind with this number; air if there is none.
     #[must_use]
     pub fn of(number: u8) -> Block {
         KINDS.get(usize::from(number)).map_or(Block::Air, |kind| kind.block)
     }
 
-    /// What it is in files.
+    /// Its representation in files.
     #[must_use]
     pub fn kind(self) -> &'static BlockKind {
         &KINDS[self as usize]

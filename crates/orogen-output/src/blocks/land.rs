@@ -1,4 +1,4 @@
-//! The columns of a part of a world, from which its blocks follow.
+//! The columns of a part of a world, from which its blocks are computed.
 
 use super::cover::Cover;
 use super::density::{DENSITY, Offsets};
@@ -16,16 +16,16 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_grid::words;
 
-/// Columns around a window that its blocks depend on: those of trees whose crowns reach into it.
+/// Columns around a window that its blocks depend on: trees there may have crowns that reach into the window.
 pub const HALO: usize = 4;
 
-/// Memory for each column beside that of the engine, in bytes: its layers and what follows from them.
+/// Memory for each column in addition to that of the engine, in bytes: its layers and the data computed from them.
 pub const COLUMN_BYTES: u64 = 32;
 
 /// Levels above the ground that a density may fill.
 const ROOM: i32 = 32;
 
-/// Depth from which a lake has water, in metres.
+/// Minimum depth of a lake in metres.
 const DEPTH: f32 = 0.01;
 
 /// How far a class may be from a whole number.
@@ -34,17 +34,17 @@ const WHOLE: f32 = 1e-3;
 /// A column of blocks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Column {
-    /// Height of the ground in metres; not a number where there is none.
+    /// Height of the ground in metres; NaN where there is none.
     pub height: f32,
-    /// Altitude of the water's surface in metres; minus infinity where there is none.
+    /// Altitude of the water surface in metres; negative infinity where there is none.
     pub water: f32,
     /// The uppermost blocks.
     pub cover: Cover,
 }
 
 impl Column {
-    /// A column of the class water has at least one block of it, also where the water is shallower than a block, or a
-    /// river whose surface is not known.
+    /// Gives a column of the class water at least one block of water, also where the water is shallower than a block or
+    /// the surface of a river is unknown.
     fn drowned(self, cell: f64) -> Column {
         if self.cover != Cover::Bed {
             return self;
@@ -59,31 +59,31 @@ impl Column {
     }
 }
 
-/// The columns of a window, and of what is around it.
+/// The columns of a window and of the halo around it.
 #[derive(Debug)]
 pub struct Land {
-    /// The window: a column each. Blocks are as high as its cell.
+    /// The window, with one column of blocks per sample. A block is as high as a cell is wide.
     pub window: Window,
     /// The levels of its blocks.
     pub levels: Levels,
-    /// How many heights of the window are numbers. Columns without a height have no blocks.
+    /// Number of finite heights in the window. Columns without a height have no blocks.
     pub finite: FiniteCount,
     pub(super) around: Window,
     pub(super) columns: Vec<Column>,
-    /// What the density adds to the heights, if the recipe has one.
+    /// The offsets of the density, if the recipe has one.
     pub(super) offsets: Option<Offsets>,
     pub(super) has_trees: bool,
     pub(super) seed: u64,
-    /// The sea level in metres, exaggerated.
+    /// The sea level in metres, multiplied by the exaggeration.
     pub(super) sea_level: f64,
 }
 
-/// Adds what blocks need to a recipe: its own classes with the numbers of the standard ones of their names, or the
-/// [standard classes](orogen_engine::recipe::class::standard), if it has none and no output `class`. `cell` is the size
-/// of a block in metres.
+/// Adds to a recipe what blocks need. Classes that the recipe has get the numbers of the standard classes with the same
+/// names; if it has no classes and no output `class`, the [standard classes](orogen_engine::recipe::class::standard)
+/// are added. `cell` is the size of a block in metres.
 ///
 /// # Errors
-/// If the recipe has no output `height`, or a class that is none of the standard ones.
+/// If the recipe has no output `height`, or a class that is not a standard one.
 pub fn prepare(recipe: &mut Recipe, cell: f64) -> Result<()> {
     if !recipe.outputs().any(|name| name == HEIGHT) {
         let message = "the recipe has no output `height`, so there is no ground to build of blocks; name the heights in [outputs]";
@@ -94,12 +94,13 @@ pub fn prepare(recipe: &mut Recipe, cell: f64) -> Result<()> {
 }
 
 impl Land {
-    /// The columns of a window, with heights and water times `exaggeration`. `world` is of a [prepared](prepare)
-    /// recipe. `fits` checks the levels once they are known, before the density of the ground is computed.
+    /// The columns of a window, with heights and water multiplied by `exaggeration`. `world` must be made of a
+    /// [prepared](prepare) recipe. `fits` checks the levels once they are known, before the density of the ground is
+    /// computed.
     ///
     /// # Errors
-    /// If the window is not in the world or has no height, if a class is no number from 0 to 5, if heights are more
-    /// than [`MAX_LEVEL`] blocks from 0, if `fits` fails, or if `progress` is cancelled.
+    /// If the window is not in the world or has no height, if a class is not a whole number from 0 to 5, if heights are
+    /// more than [`MAX_LEVEL`] blocks from 0, if `fits` fails, or if `progress` is cancelled.
     pub fn of(
         world: &World,
         window: &Window,
@@ -193,7 +194,7 @@ impl Land {
         Ok(land)
     }
 
-    /// The column at a position, if it is in the window or around it.
+    /// The column at a position; `None` outside the window and its halo.
     #[inline]
     pub(super) fn column(&self, x: i64, y: i64) -> Option<&Column> {
         let (x, y) = (x - self.around.x, y - self.around.y);
@@ -201,7 +202,7 @@ impl Land {
         is_inside.then(|| &self.columns[y as usize * self.around.width + x as usize])
     }
 
-    /// The lowest altitude of the ground in a part of the land, and the highest of ground or water; `None` if there is
+    /// The lowest altitude of the ground and the highest of ground or water in a part of the land; `None` if there is
     /// neither.
     fn range(&self, part: &Window) -> Option<[f32; 2]> {
         let left = (part.x - self.around.x) as usize;
@@ -217,7 +218,7 @@ impl Land {
     }
 }
 
-/// The cover of the class of a sample.
+/// The cover for the class of a sample.
 fn cover(classes: &Grid, at: usize) -> Result<Cover> {
     let value = classes.data()[at];
     if value.is_nan() {

@@ -1,6 +1,6 @@
 //! Levels of blocks.
 
-/// A range of levels. The blocks of level k are between the altitudes k and k + 1 times the cell.
+/// A range of levels. The blocks of level k lie between the altitudes k and k + 1 times the cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Levels {
     /// The lowest level.
@@ -9,15 +9,15 @@ pub struct Levels {
     pub count: usize,
 }
 
-/// Levels beyond this are not counted: altitudes would not be exact.
+/// Levels are limited to plus or minus this; beyond it altitudes would not be exact.
 pub const MAX_LEVEL: i32 = 1 << 22;
 
 /// Which levels a land has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Extent {
-    /// These.
+    /// Given levels.
     Levels(Levels),
-    /// Those from so many levels below the lowest ground of the window to the tops of its trees.
+    /// From this number of levels below the lowest ground of the window to the tops of its trees.
     Below(u32),
 }
 
@@ -28,7 +28,7 @@ pub const DEFAULT_BELOW: u32 = 16;
 pub const MAX_BELOW: u32 = 4096;
 
 impl Levels {
-    /// The levels from `bottom` to `top`, without `top`; none if that is lower.
+    /// The levels from `bottom` to `top`, excluding `top`; empty if `top` is not above `bottom`.
     #[must_use]
     pub fn between(bottom: i32, top: i32) -> Levels {
         Levels { bottom, count: top.saturating_sub(bottom).max(0) as usize }

@@ -1,11 +1,11 @@
-//! The light of the day in and around blocks, for files that store it.
+//! Daylight in and around blocks, for files that store it.
 
 use super::kind::Block;
 use super::volume::BlockVolume;
 use orogen_grid::error::Result;
 use orogen_grid::progress::Progress;
 
-/// Light in the open.
+/// Light in the open, the maximum.
 const SUN: u8 = 15;
 
 /// The light of each block, 0 to 15.
@@ -14,8 +14,8 @@ pub(super) struct Daylight<'a> {
     light: Vec<u8>,
 }
 
-/// Light falls from above through air, and spreads by a level less with each block to the sides and down, through water
-/// and leaves too.
+/// Computes the daylight. Light falls from above through air at full strength. From there it spreads in all directions
+/// through air, water and leaves, and loses one level per block.
 ///
 /// Fails if `progress` is cancelled.
 pub(super) fn daylight<'a>(volume: &'a BlockVolume, progress: &Progress) -> Result<Daylight<'a>> {
@@ -56,8 +56,8 @@ pub(super) fn daylight<'a>(volume: &'a BlockVolume, progress: &Progress) -> Resu
 }
 
 impl Daylight<'_> {
-    /// The light of a block: see [`BlockVolume::block`]. Beyond the sides and above it is that of the open, below it is
-    /// dark.
+    /// The light of a block, with the coordinates of [`BlockVolume::block`]. Outside the volume it is full light at the
+    /// sides and above, and dark below.
     pub(super) fn at(&self, [column, row, level]: [i64; 3]) -> u8 {
         let [width, count, height] = self.volume.size();
         let is_inside = (0..width as i64).contains(&column) && (0..height as i64).contains(&row);

@@ -1,7 +1,7 @@
 //! Blocks as a Luanti (Minetest) world: the map and its settings, and a mod with the nodes.
 //!
 //! The middle of the window is at x = z = 0, and the surface of the sea below y = 0. The nodes belong to the mod; in
-//! games that have nodes of the same kind, these are taken.
+//! games that have equivalent nodes, those are used instead.
 
 use std::io::{self, Write};
 
@@ -36,20 +36,20 @@ const MOD: &str = include_str!("orogen_blocks.lua");
 /// Pixels along a side of the texture.
 const TEXTURE: usize = 16;
 
-/// A world: where its blocks are.
+/// A Luanti world with the position of its blocks.
 pub struct LuantiWorld<'a> {
     volume: &'a BlockVolume,
-    /// The node of the north-west corner of the lowest level.
+    /// The node position of the north-west corner of the lowest level.
     start: [i64; 3],
     /// The map blocks with their keys.
     blocks: Vec<(i64, Vec<u8>)>,
 }
 
 impl<'a> LuantiWorld<'a> {
-    /// The world of these blocks.
+    /// Creates the world of these blocks.
     ///
     /// # Errors
-    /// If they do not fit into a world of Luanti, or `progress` is cancelled.
+    /// If the blocks do not fit into a Luanti world, or `progress` is cancelled.
     pub fn new(volume: &'a BlockVolume, progress: &Progress) -> Result<LuantiWorld<'a>> {
         let start = LuantiWorld::start(volume.size(), volume.levels, volume.sea_level, volume.window.cell)?;
         let mut world = LuantiWorld { volume, start, blocks: Vec::new() };
@@ -57,10 +57,11 @@ impl<'a> LuantiWorld<'a> {
         Ok(world)
     }
 
-    /// The node of the north-west corner of the lowest level of a number of blocks to the east, up and to the south.
+    /// The node position of the north-west corner of the lowest level, for a volume of this many blocks to the east, up
+    /// and to the south.
     ///
     /// # Errors
-    /// If they do not fit into a world of Luanti.
+    /// If the blocks do not fit into a Luanti world.
     pub fn start([width, count, height]: [usize; 3], levels: Levels, sea_level: f64, cell: f64) -> Result<[i64; 3]> {
         let bottom = i64::from(levels.bottom) - i64::from(Levels::of(sea_level, cell));
         let start = [-(width as i64 / 2), bottom, height as i64 - 1 - height as i64 / 2];
@@ -77,13 +78,13 @@ impl<'a> LuantiWorld<'a> {
         Err(Error::new(ErrorKind::Request, message))
     }
 
-    /// Memory for writing it beside the blocks, in bytes: their light, and the map blocks.
+    /// Memory for writing the world in addition to the blocks, in bytes: their light, and the map blocks.
     #[must_use]
     pub fn memory(blocks: u64) -> u64 {
         blocks.saturating_mul(2)
     }
 
-    /// Writes one of its [`FILES`].
+    /// Writes one of the [`FILES`].
     ///
     /// # Errors
     /// If `out` fails.
@@ -112,7 +113,7 @@ impl<'a> LuantiWorld<'a> {
         }
     }
 
-    /// The node of a block: see [`BlockVolume::block`].
+    /// The node position of a block, with the coordinates of [`BlockVolume::block`].
     fn node(&self, [column, row, level]: [i64; 3]) -> [i64; 3] {
         [self.start[0] + column, self.start[1] + level, self.start[2] - row]
     }
@@ -161,7 +162,8 @@ impl<'a> LuantiWorld<'a> {
         writeln!(out, "}}\nlocal spawn = {{ x = {x}, y = {y}, z = {z} }}\n{MOD}")
     }
 
-    /// Where players begin: above the dry ground nearest to the middle of the map, otherwise above its middle.
+    /// The start position of players: above the dry ground nearest to the middle of the map, or above the middle if all
+    /// ground is wet.
     fn spawn(&self) -> [i64; 3] {
         let [width, count, height] = self.volume.size().map(|side| side as i64);
         let top = |column: i64, row: i64| {
@@ -190,7 +192,7 @@ impl<'a> LuantiWorld<'a> {
     }
 }
 
-/// The names of nodes by their number.
+/// Node names, indexed by number.
 const NAMES: [&str; KINDS.len()] = [
     "air",
     "orogen_blocks:water",
@@ -213,7 +215,7 @@ const NAMES: [&str; KINDS.len()] = [
     "orogen_blocks:needles",
 ];
 
-/// The texture of all nodes: grain, which the mod multiplies by the color of each.
+/// Writes the texture of all nodes: grain, which the mod multiplies by the color of each node.
 fn write_texture(out: &mut dyn Write) -> io::Result<()> {
     let grain = |at: usize| 255 - (hash(9, [(at % TEXTURE) as i64, (at / TEXTURE) as i64, 0]) % 48) as u8;
     png::write(out, &Picture::new(TEXTURE, TEXTURE, Pixel::Grey8), |rows, bytes| {

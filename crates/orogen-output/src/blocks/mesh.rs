@@ -1,7 +1,7 @@
 //! The surface of a land as triangles, with the colors of its blocks.
 //!
-//! Surface nets of the densities in the middles of the blocks, in chunks. Chunks share the vertices along their
-//! borders, bit for bit.
+//! Surface nets of the densities at the centers of the blocks, in chunks. Neighboring chunks have bit-identical
+//! vertices along their common border.
 
 use std::io::{self, Write};
 
@@ -21,13 +21,13 @@ use crate::mesh::body::BodyMesh;
 use crate::mesh::glb::{self, Model};
 use crate::mesh::water::WaterMesh;
 
-/// Columns along a side of a part of the mesh.
+/// Columns along a side of a chunk of the mesh.
 const SIDE: usize = 64;
 
 /// Color of water in linear light, and its opacity.
 const WATER: [f32; 4] = [0.04, 0.15, 0.3, 0.75];
 
-/// Memory for each sample of a part while it is made, in bytes: its density, its block and the number of its vertex.
+/// Memory per sample of a chunk while it is made, in bytes: its density, its block and its vertex number.
 const SAMPLE: u64 = 4 + 1 + 4;
 
 /// The surface of a land.
@@ -38,21 +38,21 @@ pub struct BlockMesh {
     _memory: Vec<Reservation>,
 }
 
-/// Number of parts of a window that are made at once.
+/// Number of chunks of a window that are made at once.
 fn at_once(window: &Window) -> usize {
     let parts = window.width.div_ceil(SIDE).saturating_mul(window.height.div_ceil(SIDE));
     parallel::threads().min(parts).max(1)
 }
 
 impl BlockMesh {
-    /// Memory for the parts that are made at once, in bytes, without the mesh.
+    /// Memory for the chunks that are made at once, in bytes, without the mesh.
     #[must_use]
     pub fn memory(window: &Window, levels: Levels) -> u64 {
         let samples = (SIDE + 2).pow(2) as u64 * levels.count as u64;
         samples.saturating_mul(SAMPLE).saturating_mul(at_once(window) as u64)
     }
 
-    /// The surface of the window of a land, from its memory budget.
+    /// The surface of the window of a land. Memory is taken from `budget`.
     ///
     /// # Errors
     /// If there is not enough memory, or `progress` is cancelled.
@@ -79,7 +79,7 @@ impl BlockMesh {
         Ok(BlockMesh { bodies, water, _memory: memory })
     }
 
-    /// Triangles of the ground, and in how many parts they are.
+    /// Number of triangles of the ground, and number of chunks that hold them.
     #[must_use]
     pub fn triangles(&self) -> [usize; 2] {
         [self.bodies.iter().map(|body| body.triangles.len()).sum(), self.bodies.len()]
@@ -116,10 +116,10 @@ fn water(land: &Land) -> WaterMesh {
     water
 }
 
-/// A part of the surface.
+/// A chunk of the surface.
 fn body(land: &Land, part: &Window) -> Result<BodyMesh> {
     let (window, cell, levels) = (land.window, land.window.cell, land.levels);
-    // A sample before the first and one behind the last; beyond the land they are those of its sides.
+    // One sample before the first and one after the last; beyond the land they repeat its sides.
     let size = [part.width + 2, part.height + 2, levels.count];
     let start = [part.x - 1, part.y - 1, i64::from(levels.bottom)];
     let mut densities = vec![f32::NEG_INFINITY; size.iter().product()];
@@ -146,7 +146,7 @@ fn body(land: &Land, part: &Window) -> Result<BodyMesh> {
         [at(0, window.x), (Levels::middle(cube[2] as i32, cell) + f64::from(offset[2]) * cell) as f32, at(1, window.y)]
     };
     let color = |cube: &[i64; 3]| {
-        // The mean of the blocks around the vertex that lie open above, otherwise of the uppermost ones.
+        // The mean color of the blocks around the vertex that are open above, otherwise of the uppermost ones.
         let corners = (0..8).rev().map(|corner| [0, 1, 2].map(|axis| cube[axis] + (corner >> axis & 1)));
         let ground: Vec<([i64; 3], Block)> =
             corners.map(|at| (at, block(at))).filter(|(_, block)| is_ground(block)).collect();

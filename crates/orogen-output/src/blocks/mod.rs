@@ -1,8 +1,8 @@
 //! Worlds of blocks: columns of soil, stone, ore and water, as files for block games and voxel editors.
 //!
-//! [`land::Land`] has the columns of a window, from which [`land::Land::blocks`] makes the blocks of any part, and
-//! [`volume::BlockVolume`] all of them; [`vox`], [`schem`], [`luanti`], [`picture`] and [`section`] write these.
-//! [`caves`] carves caves into any land. [`mesh`] makes a smooth surface of a land.
+//! [`land::Land`] holds the columns of a window. [`land::Land::blocks`] computes the blocks of any part of it, and
+//! [`volume::BlockVolume`] holds all of them; [`vox`], [`schem`], [`luanti`], [`picture`] and [`section`] write them.
+//! [`caves`] adds caves to any recipe. [`mesh`] makes a smooth surface of a land.
 
 #[doc(hidden)]
 pub mod caves;

@@ -1,4 +1,4 @@
-//! Blocks as a picture, seen from the south-east and from above at 2:1.
+//! An isometric picture of blocks, seen from the south-east and from above at 2:1.
 
 use std::io::{self, Write};
 
@@ -9,42 +9,42 @@ use super::hash::hash;
 use super::kind::Block;
 use super::volume::BlockVolume;
 
-/// Largest width of the face of a block in pixels.
+/// Maximum width of the face of a block in pixels.
 const MAX_FACE: usize = 8;
 
-/// Width up to which faces are as large as they can be, in pixels.
+/// Faces get the largest size with which the picture is at most this wide, in pixels.
 const WIDTH: usize = 2048;
 
 /// Maximum number of pixels along a side.
 const MAX_SIDE: usize = 8192;
 
-/// Color of what is around the blocks.
+/// Color of the background.
 pub(super) const SKY: [u8; 3] = [222, 232, 240];
 
-/// Light of the upper, the southern and the eastern face, and of a face in the shadow.
+/// Light on the upper, the southern and the eastern face, and on a face in shadow.
 const LIGHT: [f32; 3] = [1.0, 0.66, 0.82];
 const SHADOW: f32 = 0.7;
 
-/// How far shadows reach, in blocks.
+/// Length of shadows, in blocks.
 const REACH: i64 = 40;
 
-/// How much of what is below it a block of water hides, and how much more each block below it.
+/// Opacity of a block of water, and the increase for each further block of water below it.
 const WATER: [f32; 2] = [0.62, 0.045];
 
-/// Depth from which water hides no more, in blocks.
+/// Depth in blocks from which water is no more opaque.
 const DEEP: i64 = 7;
 
-/// The picture of a volume: its size, and how large a block is in it.
+/// The layout of a picture of a volume: its size and the size of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Isometric {
     width: usize,
     height: usize,
-    /// Width of a face in pixels; half of it is its slant.
+    /// Width of a face in pixels; it descends by half of that.
     face: usize,
 }
 
 impl Isometric {
-    /// A picture of a number of blocks to the east, up and to the south.
+    /// Lays out a picture of this many blocks to the east, up and to the south.
     ///
     /// # Errors
     /// If it would have more than 8192 pixels along a side.
@@ -61,7 +61,7 @@ impl Isometric {
         Ok(Isometric { width, height, face })
     }
 
-    /// Memory for drawing it, in bytes.
+    /// Memory for drawing the picture, in bytes.
     #[must_use]
     pub fn memory(&self) -> u64 {
         3 * (self.width * self.height) as u64
@@ -132,7 +132,7 @@ impl Isometric {
     }
 }
 
-/// Whether blocks are between a place and the sun, in the west.
+/// Whether there are blocks between a position and the sun, which is in the west.
 fn is_shaded(volume: &BlockVolume, [column, row, level]: [i64; 3]) -> bool {
     (1..REACH).any(|step| volume.block([column - step, row + step / 2, level + step]).is_solid())
 }

@@ -1,18 +1,18 @@
-//! How far blocks depend on what is around them.
+//! Distances within which blocks depend on their surroundings.
 
 use super::cover::MAX_THICKNESS;
 
-/// Free height, in blocks, below which a floor is that of a cave and has no soil.
+/// Open height, in blocks, below which a floor belongs to a cave and has no soil.
 pub(super) const CEILING: i32 = 8;
 
 /// How far below the ground, in blocks, a floor may have soil.
 pub(super) const SOIL_REACH: i32 = 12;
 
-/// Levels above a block that it depends on.
+/// Number of levels above a block that it depends on.
 pub(super) const ABOVE: i32 = MAX_THICKNESS + CEILING + 2;
 
-/// Columns from the trunk of a tree to the end of its crown.
+/// Columns from the trunk of a tree to the edge of its crown.
 pub(super) const CROWN: i64 = 2;
 
-/// Levels from the foot of a tree to its top, at most.
+/// Maximum number of levels from the foot of a tree to its top.
 pub(super) const TREE_HEIGHT: i32 = 10;

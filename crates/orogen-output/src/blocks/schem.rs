@@ -8,13 +8,13 @@ use super::kind::KINDS;
 use super::levels::Levels;
 use super::volume::BlockVolume;
 
-/// The level of Minecraft whose top is the surface of the sea.
+/// The Minecraft level whose top is the surface of the sea.
 const SEA: i32 = 62;
 
-/// Writes the blocks. Pasted at 0, 0, 0, the sea has the level of the seas of Minecraft.
+/// Writes the blocks. When the schematic is pasted at 0, 0, 0, the sea is at Minecraft's sea level.
 ///
 /// # Errors
-/// If `out` fails, or it has more blocks than the format holds.
+/// If `out` fails, or there are more blocks than the format can hold.
 pub fn write_schem(out: &mut dyn Write, volume: &BlockVolume) -> io::Result<()> {
     let sea = Levels::of(volume.sea_level, volume.window.cell);
     let palette = KINDS.map(|kind| kind.minecraft);

@@ -1,4 +1,4 @@
-//! A vertical cut through blocks, as a picture.
+//! A picture of a vertical section through blocks.
 
 use std::io::{self, Write};
 
@@ -10,7 +10,7 @@ use super::kind::Block;
 use super::picture::SKY;
 use super::volume::BlockVolume;
 
-/// Largest side of a block in pixels, and the width up to which blocks are as large.
+/// Maximum side of a block in pixels, and the width of a picture up to which blocks have that size.
 const MAX_SIDE: usize = 8;
 const WIDTH: usize = 2048;
 
@@ -20,7 +20,7 @@ const MAX_PIXELS: usize = 16384;
 /// Color of the air in caves and below overhangs.
 const CAVE: [u8; 3] = [52, 48, 46];
 
-/// Where blocks are cut.
+/// The position of a section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Section {
     /// Along a row of the window, from west to east; rows are counted from 0 in the north.
@@ -47,7 +47,7 @@ impl Section {
         })
     }
 
-    /// The side of a block in pixels, in a picture of so many levels.
+    /// The side of a block in pixels, in a picture of this many levels.
     ///
     /// # Errors
     /// If the window does not have this row or column, or the picture would have more than 16384 pixels along a side.
@@ -73,7 +73,7 @@ impl Section {
         Ok((WIDTH / across.max(1)).min(MAX_PIXELS / levels.max(1)).clamp(1, MAX_SIDE))
     }
 
-    /// Blocks from the left to the right.
+    /// Number of blocks from left to right.
     fn across(self, window: &Window) -> usize {
         match self {
             Section::Row(_) => window.width,

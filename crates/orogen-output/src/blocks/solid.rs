@@ -4,7 +4,7 @@ use super::density::Offsets;
 use super::land::{Column, Land};
 use super::levels::Levels;
 
-/// Which levels of a column are solid. It is used for one column after the other.
+/// Which levels of a column are solid. Reused for one column after another.
 #[derive(Default)]
 pub(super) struct Solid<'a> {
     height: f64,
@@ -15,7 +15,7 @@ pub(super) struct Solid<'a> {
 }
 
 impl<'a> Solid<'a> {
-    /// Turns to a column.
+    /// Starts a column.
     pub(super) fn begin(&mut self, land: &'a Land, column: &Column, at: [i64; 2]) {
         (self.height, self.cell) = (f64::from(column.height), land.window.cell);
         self.offsets = land.offsets.as_ref();
@@ -39,8 +39,8 @@ impl<'a> Solid<'a> {
 }
 
 impl Land {
-    /// Calls a function for the density in the middle of each block of a column, from the bottom: positive where it is
-    /// solid, in metres. Beyond the land the column is the nearest of it.
+    /// Calls a function with the density in the middle of each block of a column, from the bottom: positive where it is
+    /// solid, in metres. Outside the land, the nearest column is used.
     pub(super) fn densities(&self, x: i64, y: i64, mut visit: impl FnMut(usize, f32)) {
         let x = x.clamp(self.around.x, self.around.right() - 1);
         let y = y.clamp(self.around.y, self.around.bottom() - 1);

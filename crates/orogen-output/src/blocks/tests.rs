@@ -11,7 +11,7 @@ use super::volume::BlockVolume;
 use orogen_engine::{Recipe, Window, World, presets};
 use orogen_grid::progress::Progress;
 
-/// The preset with caves, or without its density.
+/// The preset with caves, with or without its density.
 fn caves(has_density: bool) -> World {
     let recipe = presets::find("caves").unwrap().recipe().unwrap();
     let text = recipe.to_toml();
@@ -31,7 +31,7 @@ fn blocks_of_a_part_are_those_of_the_whole() {
         let world = caves(has_density);
         let whole = land(&world, Window::new(384, 384, 1.0), Extent::Below(12));
         let volume = BlockVolume::of(&whole, &Progress::none()).unwrap();
-        // Chunks in the middle and at the sides, of other levels, and one that is no chunk.
+        // Chunks in the middle and at the sides, with other levels, and a window that is not a chunk.
         for (x, y, width, height) in [(0, 0, 16, 16), (368, 368, 16, 16), (160, 208, 16, 16), (83, 117, 37, 5)] {
             for (bottom, top) in [(-20, 90), (3, 19), (-6, -2), (30, 40)] {
                 let window = Window::new(width, height, 1.0).at(x, y);
@@ -60,7 +60,7 @@ fn caves_are_in_the_ground_and_overhangs_above_it() {
         BlockVolume::of(&land, &Progress::none()).unwrap()
     });
     let layer = 384 * 384;
-    // Columns in which air is below something solid that is no tree.
+    // Columns with air below something solid that is not a tree.
     let roofed = volumes.each_ref().map(|volume| {
         let is_roofed = |column: usize| {
             let kinds = (0..volume.levels.count).map(|level| Block::of(volume.blocks[level * layer + column]));
@@ -77,7 +77,7 @@ fn caves_are_in_the_ground_and_overhangs_above_it() {
         {
             assert!(counts[block as usize] > 10, "{block:?}");
         }
-        // Water stands on ground or on water, and nothing grows in it.
+        // Water lies on ground or on water, and nothing grows in it.
         for at in layer..volume.blocks.len() {
             let [below, block] = [at - layer, at].map(|at| Block::of(volume.blocks[at]));
             assert!(block != Block::Water || below.is_solid() || below == Block::Water, "{below:?}");
@@ -109,7 +109,7 @@ fn caves_of_any_recipe_open_to_the_surface_and_keep_from_water() {
     assert_eq!(solid.enclosed(), 0);
     assert!(caves.enclosed() > 2000, "{}", caves.enclosed());
     let air = volumes.each_ref().map(|volume| volume.counts()[Block::Air as usize]);
-    // The levels are as many as those of the caves' room above the ground, which is air.
+    // There are as many levels as the caves have above the ground, all of air.
     let layer = 200 * 160;
     let opened = (0..layer).filter(|column| {
         let at = [column % 200, column / 200];
@@ -117,7 +117,7 @@ fn caves_of_any_recipe_open_to_the_surface_and_keep_from_water() {
     });
     let opened = opened.count();
     assert!(air[0] > air[1] && opened > 50 && opened < layer / 4, "{opened}");
-    // All water is where it was, and no cave is below it, beside it or through the bottom.
+    // All water is where it was, and no cave is below it, next to it or through the bottom.
     let mut water = 0;
     for column in 0..layer {
         let [x, y] = [(column % 200) as i64, (column / 200) as i64];
@@ -137,7 +137,7 @@ fn caves_of_any_recipe_open_to_the_surface_and_keep_from_water() {
         );
     }
     assert!(water > 1000 && water < layer / 2, "{water}");
-    // The same in any part.
+    // Any part gives the same blocks.
     let window = Window::new(30, 20, 1.0).at(90, 70);
     let part = land(&hills(true), window, Extent::Levels(Levels::between(-30, 60)));
     let blocks = part.blocks(&window).unwrap();
@@ -170,7 +170,7 @@ fn exaggeration_is_of_the_ground_the_water_and_the_density() {
         let [[low, high], [lower, higher]] = [&once, &twice].map(|land| [land.levels.bottom, land.levels.top()]);
         assert!(higher - lower > (high - low) * 3 / 2 && higher > high, "{low} {high} {lower} {higher}");
         if let (Some(once), Some(twice)) = (&once.offsets, &twice.offsets) {
-            // At the same place of the land, half as high.
+            // At the same position of the land, half as high.
             let [mut a, mut b] = [Vec::new(), Vec::new()];
             once.column([100, 80], &mut a);
             twice.column([100, 80], &mut b);
@@ -186,7 +186,7 @@ fn a_section_shows_the_blocks_of_a_row_or_a_column() {
     let land = land(&hills(true), window, Extent::Below(20));
     let volume = BlockVolume::of(&land, &Progress::none()).unwrap();
     let levels = volume.levels.count;
-    // The row and the column with the most free blocks below the ground.
+    // The row and the column with the most open blocks below the ground.
     let enclosed = |at: [usize; 2]| {
         let free = |level: &usize| volume.block([at[0] as i64, at[1] as i64, *level as i64]) == Block::Air;
         (0..volume.ground(at).unwrap_or(0)).filter(free).count()
@@ -263,12 +263,12 @@ fn parts_of_a_mesh_share_their_borders() {
         assert!(out.starts_with(b"glTF"));
         mesh.triangles()
     });
-    // The eastern half of a mesh that is made apart has as many triangles as in the whole.
+    // The eastern half of a mesh that is made separately has as many triangles as in the whole mesh.
     assert_eq!((whole[1], east[1]), (2, 1));
     assert!(whole[0] > east[0] && east[0] > 2 * 64 * 64);
 }
 
-/// Water that is shallower than a block, and a river above the sea, have a block of water.
+/// Water shallower than a block, and a river above the sea, have a block of water.
 #[test]
 fn what_is_water_in_a_map_has_water() {
     let recipe = r#"

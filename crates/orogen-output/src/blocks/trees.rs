@@ -1,4 +1,4 @@
-//! Trees: one place in each square of columns, by hashes of positions.
+//! Trees: one candidate position in each square of columns, from hashes of positions.
 
 use super::hash::{hash, share};
 use super::kind::Block;
@@ -11,7 +11,7 @@ use orogen_grid::grid::Window;
 /// Columns along a side of the square in which a tree may stand.
 const SQUARE: i64 = 5;
 
-/// Columns of a square in which trees stand: trees of neighboring squares keep a distance.
+/// Side of the part of a square in which trees stand, in columns; it keeps neighboring trees apart.
 const INNER: u64 = 4;
 
 /// A tree.

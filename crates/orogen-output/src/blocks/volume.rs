@@ -13,11 +13,11 @@ use orogen_grid::progress::Progress;
 /// The blocks of a window.
 #[derive(Debug, Clone)]
 pub struct BlockVolume {
-    /// The window: a column of blocks each.
+    /// The window, with one column of blocks per sample.
     pub window: Window,
     /// The levels.
     pub levels: Levels,
-    /// Numbers of kinds: level by level from the bottom, in each row by row from the north.
+    /// Numbers of kinds: level by level from the bottom, each level row by row from the north.
     pub blocks: Vec<u8>,
     /// The world's sea level, in metres.
     pub sea_level: f64,
@@ -30,11 +30,11 @@ impl BlockVolume {
     #[must_use]
     pub fn memory(window: &Window, levels: Levels) -> u64 {
         let rows = (window.width as u64).saturating_mul(levels.count as u64);
-        // The blocks, and those of the chunks of a row.
+        // All blocks, and the blocks of one row of chunks.
         rows.saturating_mul(window.height as u64).saturating_add(rows.saturating_mul(2 * SIDE as u64))
     }
 
-    /// The blocks of a land. Levels at the top that hold only air are left out.
+    /// Computes the blocks of a land. Levels of air at the top are omitted.
     ///
     /// # Errors
     /// If `progress` is cancelled.
@@ -43,7 +43,7 @@ impl BlockVolume {
         let layer = window.len();
         let mut blocks = vec![Block::Air as u8; layer * levels.count];
         progress.expect(window.height as f64);
-        // Chunks lie on a grid of the world, but any division gives the same blocks.
+        // Chunks are aligned to a grid of the world, but any division gives the same blocks.
         for top in (0..window.height).step_by(SIDE) {
             progress.check()?;
             let height = SIDE.min(window.height - top);
@@ -68,13 +68,13 @@ impl BlockVolume {
         Ok(BlockVolume { window, levels, blocks, sea_level: land.sea_level, seed: land.seed })
     }
 
-    /// Blocks to the east, up and to the south.
+    /// Number of blocks to the east, up and to the south.
     #[must_use]
     pub fn size(&self) -> [usize; 3] {
         [self.window.width, self.levels.count, self.window.height]
     }
 
-    /// The block of a column and a row of the window, and of a level above the bottom; air beyond the ends.
+    /// The block at a column and row of the window and a level above the bottom; air outside.
     #[inline]
     #[must_use]
     pub fn block(&self, [column, row, level]: [i64; 3]) -> Block {
@@ -88,8 +88,8 @@ impl BlockVolume {
         Block::of(self.blocks[(level as usize * height + row as usize) * width + column as usize])
     }
 
-    /// The level of the highest solid block of a column and a row that is no tree, above the bottom: what is free below
-    /// it is in a cave or below an overhang.
+    /// The level above the bottom of the highest solid block of a column that is not part of a tree. Open blocks below
+    /// it are in a cave or below an overhang.
     #[must_use]
     pub fn ground(&self, [column, row]: [usize; 2]) -> Option<usize> {
         let is_ground = |level: &usize| {
@@ -99,7 +99,7 @@ impl BlockVolume {
         (0..self.levels.count).rev().find(is_ground)
     }
 
-    /// How many blocks of air are in caves and below overhangs.
+    /// Number of blocks of air in caves and below overhangs.
     #[must_use]
     pub fn enclosed(&self) -> u64 {
         let row = |row: usize| -> u64 {
@@ -113,7 +113,7 @@ impl BlockVolume {
         parallel::map(0..self.window.height, row).into_iter().sum()
     }
 
-    /// How many blocks of each kind there are.
+    /// Number of blocks of each kind.
     #[must_use]
     pub fn counts(&self) -> [u64; KINDS.len()] {
         let mut counts = [0; KINDS.len()];

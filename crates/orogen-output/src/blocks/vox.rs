@@ -7,10 +7,10 @@ use orogen_io::format::vox::{Scene, write};
 use super::kind::{Block, KINDS};
 use super::volume::BlockVolume;
 
-/// Writes the blocks. A voxel has the number of its kind as its color; x points east, y north and z up.
+/// Writes the blocks. The color index of a voxel is the number of its kind; x points east, y north and z up.
 ///
 /// # Errors
-/// If `out` fails, or the file would have more than 4 GiB.
+/// If `out` fails, or the file would exceed 4 GiB.
 pub fn write_vox(out: &mut dyn Write, volume: &BlockVolume) -> io::Result<()> {
     let [width, count, height] = volume.size();
     let palette: Vec<[u8; 4]> =

@@ -8,7 +8,7 @@ use orogen_io::format::png::{self, Picture, Pixel};
 /// A color in sRGB bytes: red, green, blue.
 pub type Ink = [u8; 3];
 
-/// A page of pixels. Columns and rows count from the upper left corner; pixels outside of it are ignored.
+/// A page of pixels. Columns and rows count from the upper left corner. Writes to pixels outside of it are ignored.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Canvas {
     width: usize,
@@ -17,13 +17,13 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// A page of one color.
+    /// A page filled with one color.
     #[must_use]
     pub fn new(width: usize, height: usize, paper: Ink) -> Canvas {
         Canvas { width, height, pixels: vec![paper; width * height] }
     }
 
-    /// A page of these pixels, row-major; missing pixels at the end are white.
+    /// A page with these pixels, row-major; missing pixels at the end are white.
     #[must_use]
     pub fn of(width: usize, height: usize, mut pixels: Vec<Ink>) -> Canvas {
         pixels.resize(width * height, [255; 3]);

@@ -1,4 +1,4 @@
-//! The pictures of `orogen variants`, with the same colors and light, and the page with them side by side.
+//! The pictures of `orogen variants`, with the same colors and light, and the page that shows them side by side.
 
 use std::borrow::Cow;
 
@@ -17,7 +17,7 @@ const INK: Ink = [28; 3];
 const SOFT: Ink = [97; 3];
 const LINE: Ink = [194; 3];
 
-/// Measures in pixels.
+/// Dimensions in pixels.
 const MARGIN: usize = 44;
 const GUTTER: usize = 20;
 const HEADER: usize = 74;
@@ -44,11 +44,11 @@ pub struct Variant {
     pub label: String,
     /// The heights.
     pub grid: Grid,
-    /// A picture of them in place of the relief map.
+    /// A picture that replaces the relief map.
     pub picture: Option<Drawn>,
 }
 
-/// A picture that was made elsewhere.
+/// A picture that was drawn elsewhere, such as a render.
 pub struct Drawn {
     /// Width and height in pixels.
     pub size: [usize; 2],
@@ -57,8 +57,8 @@ pub struct Drawn {
 }
 
 impl Sheet {
-    /// The painter of maps, with the same colors and light for all pictures. While it is made it takes [`fitting`]
-    /// bytes.
+    /// The painter of the maps, with the same colors and light for all pictures. Making it takes [`fitting`] bytes of
+    /// memory.
     #[must_use]
     pub fn painter(&self, variants: &[Variant]) -> Painter {
         let all = together(variants);
@@ -76,7 +76,7 @@ impl Variant {
         self.picture.as_ref().map_or([self.grid.width(), self.grid.height()], |picture| picture.size)
     }
 
-    /// Red, green and blue of each pixel of the picture; the painter is that of [`Sheet::painter`].
+    /// Red, green and blue of each pixel of the picture. `painter` comes from [`Sheet::painter`].
     #[must_use]
     pub fn pixels(&self, painter: &Painter) -> Cow<'_, [u8]> {
         if let Some(picture) = &self.picture {
@@ -102,7 +102,7 @@ pub fn fitting(variants: &[Variant]) -> u64 {
     variants.iter().map(|variant| size_of_val(variant.grid.data()) as u64).sum()
 }
 
-/// Pictures per row, and the size of the largest.
+/// Number of pictures per row, and the size of the largest one.
 struct Layout {
     columns: usize,
     rows: usize,
@@ -153,7 +153,7 @@ pub fn draw(sheet: &Sheet, variants: &[Variant], columns: Option<usize>) -> Resu
         let end = font.write(&mut canvas, left as f32, (baseline + 21) as i64, &label, bold);
         let heights = heights(grid, sheet.sea_level);
         let room = across as f32 - font.width(&heights, plain);
-        // Beside the label if there is room, otherwise below it.
+        // Next to the label if there is room, otherwise below it.
         match end - left as f32 + 12.0 <= room {
             true => font.write(&mut canvas, left as f32 + room, (baseline + 21) as i64, &heights, plain),
             false => {
@@ -169,7 +169,7 @@ pub fn draw(sheet: &Sheet, variants: &[Variant], columns: Option<usize>) -> Resu
     Ok(canvas)
 }
 
-/// Some rows of every world in sequence, to which colors and light are fitted.
+/// Some rows of every variant, joined into one grid to which colors and light are fitted.
 fn together(variants: &[Variant]) -> Grid {
     let width = variants.iter().map(|variant| variant.grid.width()).min().unwrap_or(1);
     let rows: usize = variants.iter().map(|variant| variant.grid.height()).sum();

@@ -16,7 +16,7 @@ use orogen_io::palette::tint::Tint;
 pub const LAKES: Rgb = [170, 211, 233];
 const DEEP_LAKES: Rgb = [92, 152, 200];
 
-/// Depth in metres at which the color is half of both.
+/// Depth in metres at which the color is the mean of the two.
 const HALF_DEPTH: f32 = 60.0;
 
 /// The style of a relief map: fitted to a world once, then the same for every window of it.
@@ -47,8 +47,8 @@ impl Painter {
         Painter::new(tint, Shade::fit(grid, sea_level as f32))
     }
 
-    /// Shades colors that were made apart: four sRGB bytes for each sample of a whole grid of heights, of which the
-    /// first three change. Where the tint shows water, the shading is weak.
+    /// Shades colors that were computed separately: four sRGB bytes for each sample of a whole grid of heights, of
+    /// which the first three are changed. Where the tint shows water, the shading is weak.
     pub fn shade(&self, grid: &Grid, bytes: &mut [u8]) {
         let width = grid.width();
         let table: Vec<f32> = (0..=u8::MAX).map(decode).collect();
@@ -96,8 +96,8 @@ impl Painter {
         });
     }
 
-    /// Writes the map of a whole grid as an RGB PNG, one pixel per sample, with lakes where `lakes`, their depth in
-    /// metres over the same window, is above 0. Beyond its edges heights are extrapolated linearly.
+    /// Writes the map of a whole grid as an RGB PNG, one pixel per sample. Lakes are drawn where `lakes`, their depth
+    /// in metres over the same window, is above 0. Heights beyond the edges are extrapolated linearly.
     pub fn write_png(
         &self,
         out: &mut dyn Write,
@@ -129,7 +129,7 @@ impl Painter {
         }
     }
 
-    /// Paints some rows of a whole grid in sRGB bytes, three per sample. Beyond its edges heights are extrapolated
+    /// Paints some rows of a whole grid in sRGB bytes, three per sample. Heights beyond the edges are extrapolated
     /// linearly.
     pub fn paint(&self, grid: &Grid, rows: Range<usize>, bytes: &mut [u8]) {
         let width = grid.width();
@@ -224,7 +224,7 @@ mod tests {
         let mut map = vec![0; 3 * grid.data().len()];
         painter.paint(&grid, 0..30, &mut map);
         for (own, map) in shaded.chunks(4).zip(map.chunks(3)) {
-            // Colors were rounded before.
+            // Colors were already rounded.
             assert!((0..3).all(|c| own[c].abs_diff(map[c]) <= 1) && own[3] == 7, "{own:?} {map:?}");
         }
     }

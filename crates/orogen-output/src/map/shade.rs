@@ -5,20 +5,20 @@ use orogen_grid::analysis::slope::{Gradient, gradients_between};
 use orogen_grid::grid::Grid;
 
 /// The lights: degrees clockwise from north, degrees above the horizon, weight. Ridges parallel to a single light are
-/// invisible; the two lights beside the main one show them (after R. K. Mark, "Multidirectional, oblique-weighted,
+/// invisible; the second and third light show them (after R. K. Mark, "Multidirectional, oblique-weighted,
 /// shaded-relief image", USGS 1992).
 const LIGHTS: [(f64, f64, f32); 3] = [(315.0, 42.0, 0.6), (265.0, 38.0, 0.2), (5.0, 38.0, 0.2)];
 
 /// The lights of the shading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lights {
-    /// One from the north-west.
+    /// One light, from the north-west.
     One,
-    /// Three, the main one from the north-west: the default.
+    /// Three lights, the main one from the north-west: the default.
     Three,
 }
 
-/// The steepness, rise over run, that is shaded without exaggeration: that of real mountains at cells of 30 m.
+/// The steepness (rise over run) that is shaded without exaggeration: the steepness of real mountains at cells of 30 m.
 const NATURAL: f32 = 0.65;
 
 /// The exponent by which the steepness is adjusted towards [`NATURAL`]: with 1 hills would look like alps, with 0
@@ -35,7 +35,7 @@ pub(crate) const UNDER_WATER: f32 = 0.35;
 /// Brightness of the printed ground relative to its albedo: paper is viewed in less light than land.
 pub const PRINTED: f32 = 1.8;
 
-/// Number of rows for fitting the z factor.
+/// Number of rows that the z factor is fitted to.
 pub(crate) const PROBES: usize = 64;
 
 /// A shading: lights and a z factor. Level ground keeps its color; slopes towards the light become brighter, others
@@ -53,7 +53,7 @@ impl Shade {
         Shade::lit(Lights::Three, z_factor)
     }
 
-    /// The same with these lights.
+    /// The shading with heights multiplied by `z_factor`, and these lights.
     #[must_use]
     pub fn lit(lights: Lights, z_factor: f32) -> Shade {
         let count = if lights == Lights::One { 1 } else { LIGHTS.len() };
@@ -72,7 +72,7 @@ impl Shade {
         Shade::fit_lit(Lights::Three, grid, sea_level)
     }
 
-    /// The same with these lights.
+    /// Like [`fit`](Shade::fit), with these lights.
     #[must_use]
     pub fn fit_lit(lights: Lights, grid: &Grid, sea_level: f32) -> Shade {
         let typical = typical_steepness(grid, |height| height > sea_level)
@@ -80,8 +80,8 @@ impl Shade {
         Shade::of_typical(lights, typical)
     }
 
-    /// The same with a z factor fitted to samples, each with its steepness and its height, such as those of [`PROBES`]
-    /// rows.
+    /// Like [`fit`](Shade::fit), but fitted to samples, each given as steepness and height, such as the samples of
+    /// [`PROBES`] rows.
     pub(crate) fn fit_samples(samples: &[(f32, f32)], sea_level: f32) -> Shade {
         let typical = |is_land: bool| {
             let kind = samples.iter().filter(|(steepness, height)| {
@@ -92,7 +92,7 @@ impl Shade {
         Shade::of_typical(Lights::Three, typical(true).or_else(|| typical(false)))
     }
 
-    /// The shading of ground that is so steep.
+    /// The shading of ground with this typical steepness.
     fn of_typical(lights: Lights, typical: Option<f32>) -> Shade {
         let z_factor = match typical {
             Some(steepness) if steepness > 0.0 => libm::powf(NATURAL / steepness, FIT),
@@ -135,7 +135,7 @@ fn typical_steepness(grid: &Grid, kind: impl Fn(f32) -> bool) -> Option<f32> {
     exceeded_by_a_quarter(found)
 }
 
-/// The number that is exceeded by a quarter of these; `None` if there are none.
+/// The number that is exceeded by a quarter of `found`; `None` if it is empty.
 fn exceeded_by_a_quarter(mut found: Vec<f32>) -> Option<f32> {
     let at = found.len() * 3 / 4;
     (!found.is_empty()).then(|| *found.select_nth_unstable_by(at, f32::total_cmp).1)
@@ -206,7 +206,7 @@ mod tests {
         let on = |shade: Shade| shade.on(Gradient { east: 0.1, north: 0.05 })[1];
         let [whole, sampled] = [on(Shade::fit(&grid, 0.0)), on(Shade::fit_samples(&samples, 0.0))];
         assert!((whole - sampled).abs() < 0.01 && whole != on(Shade::new(1.0)), "{whole} {sampled}");
-        // Without land, the sea floor is fitted; without either, nothing is.
+        // Without land, the shading is fitted to the sea floor; without either, it is not fitted.
         assert_eq!(on(Shade::fit_samples(&samples, 9000.0)), sampled);
         assert_eq!(on(Shade::fit_samples(&[], 0.0)), on(Shade::new(1.0)));
     }

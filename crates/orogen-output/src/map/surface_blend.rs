@@ -4,7 +4,7 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_io::palette::color::{Light, decode};
 use orogen_io::palette::palette::NO_DATA;
 
-/// A surface that lies on those before it.
+/// A surface on top of the previous ones.
 #[derive(Debug)]
 pub struct SurfaceLayer<'a> {
     /// Evenly spaced colors of a gradient, in linear light.
@@ -13,7 +13,7 @@ pub struct SurfaceLayer<'a> {
     pub roughness: f32,
     /// The channel that its weight is added to.
     pub channel: usize,
-    /// The share of the ground that it covers; without one it covers all.
+    /// The share of the ground that it covers, 0 to 1; without one it covers everything.
     pub share: Option<&'a Grid>,
     /// Position in the gradient, 0 to 1; without one the first color.
     pub position: Option<&'a Grid>,
@@ -24,7 +24,7 @@ pub struct SurfaceLayer<'a> {
 pub struct SurfaceBlend<'a> {
     /// The surfaces. Their layers have the window of the heights.
     pub surfaces: Vec<SurfaceLayer<'a>>,
-    /// The heights: where there is none, nothing is covered.
+    /// The heights; samples without a height are not covered.
     pub heights: &'a Grid,
 }
 
@@ -82,7 +82,7 @@ impl SurfaceBlend<'_> {
         out
     }
 
-    /// The mean roughness, 0 to 1.
+    /// The weighted mean roughness, 0 to 1.
     #[must_use]
     pub fn roughness(&self, window: &Window) -> Grid {
         let mut out = Grid::filled(*window, 0.0);

@@ -1,4 +1,4 @@
-//! Rows of a picture of surfaces in their colors: packed while their range is not known yet, then painted.
+//! A picture of surfaces in their colors, row by row: packed until the range of the heights is known, then painted.
 
 use super::shade::{PRINTED, PROBES, Shade, UNDER_WATER};
 use orogen_grid::analysis::slope::Gradient;
@@ -6,13 +6,13 @@ use orogen_io::format::levels::{NO_SAMPLES, extremes};
 use orogen_io::palette::color::{Encoder, Rgb, decode};
 use orogen_io::palette::tint::Tint;
 
-/// Share of the tint of its depth in the color of ground below the sea.
+/// Share of the depth tint in the color of ground below the sea.
 const WATER: f32 = 0.93;
 
 /// Bytes of a packed sample: an sRGB color, a gradient and a height.
 pub const SAMPLE: usize = 15;
 
-/// Packs rows of samples and learns what paints them.
+/// Packs rows of samples and collects what the painter is fitted to.
 pub struct SurfacePacker {
     encoder: Encoder,
     range: [f32; 2],
@@ -23,14 +23,14 @@ pub struct SurfacePacker {
 }
 
 impl SurfacePacker {
-    /// For a picture of so many rows.
+    /// A packer for a picture of this many rows.
     #[must_use]
     pub fn new(rows: usize) -> SurfacePacker {
         let every = rows.div_ceil(PROBES).max(1);
         SurfacePacker { encoder: Encoder::new(), range: NO_SAMPLES, probes: Vec::new(), every, row: 0 }
     }
 
-    /// The next row, packed: its albedo in linear light, its gradients to the east and north, and its heights.
+    /// Packs the next row: its albedo in linear light, its gradients to the east and north, and its heights.
     #[must_use]
     pub fn pack(&mut self, [red, green, blue, east, north, heights]: [&[f32]; 6]) -> Vec<u8> {
         self.range = extremes(self.range, heights);
@@ -47,7 +47,7 @@ impl SurfacePacker {
         bytes
     }
 
-    /// What paints the packed rows, after the last one.
+    /// The painter of the packed rows; call it after the last row.
     #[must_use]
     pub fn painter(self, sea_level: f32) -> SurfacePainter {
         let tint = Tint::hypsometric(self.range[0], self.range[1], sea_level);
@@ -55,7 +55,7 @@ impl SurfacePacker {
     }
 }
 
-/// Paints samples like a map in the colors of its surfaces, except that the ground below the sea is not hidden.
+/// Paints samples like a map in the colors of its surfaces, but leaves the ground below the sea visible.
 pub struct SurfacePainter {
     tint: Tint,
     shade: Shade,
@@ -63,7 +63,7 @@ pub struct SurfacePainter {
 }
 
 impl SurfacePainter {
-    /// The sRGB pixels of a packed row.
+    /// Converts a packed row to sRGB pixels.
     pub fn paint(&self, row: &[u8], pixels: &mut [u8]) {
         for (pixel, sample) in pixels.chunks_exact_mut(3).zip(row.as_chunks::<SAMPLE>().0) {
             pixel.copy_from_slice(&self.pixel(sample));

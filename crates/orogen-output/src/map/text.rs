@@ -1,4 +1,4 @@
-//! Text on a page, in the built-in font: Latin letters, some Greek ones and signs.
+//! Text on a page, in the built-in font: Latin letters, some Greek letters and symbols.
 //!
 //! Letters are drawn from their outlines with antialiasing and kerning. Horizontal positions are fractions of a pixel,
 //! as the font specifies; baselines are whole pixels, which keeps the feet of letters sharp.
@@ -81,7 +81,7 @@ impl BuiltinFont {
         })
     }
 
-    /// The first letter that the font has not.
+    /// The first character that the font lacks; `None` if it has all of them.
     #[must_use]
     pub fn lacking(&self, text: &str) -> Option<char> {
         text.chars().find(|letter| self.face(Face::Regular).glyph_id(*letter).0 == 0)
@@ -130,7 +130,7 @@ impl BuiltinFont {
     }
 }
 
-/// The font's scale is the height of a line; our size is that of an em.
+/// The font's scale is the height of a line; `size` is the size of an em.
 fn scale(font: &FontRef, size: f32) -> PxScale {
     PxScale::from(size * font.height_unscaled() / font.units_per_em().unwrap_or(1000.0))
 }

@@ -55,7 +55,7 @@ pub fn adaptive_with(grid: &Grid, max_error: f64, progress: &Progress) -> Result
         .flat_map(|rows| across.windows(2).map(|columns| [[columns[0], rows[0]], [columns[1], rows[1]]]))
         .collect();
     progress.expect(tiles.len() as f64);
-    // One per thread, reused for one tile after another.
+    // Buffers, one per thread, reused for one tile after another.
     let free: Mutex<Vec<(Vec<f32>, Workspace)>> = Mutex::default();
     // A panic of a thread that holds the lock leaves the data usable.
     let lock = || free.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,4 +1,4 @@
-//! Surfaces in space that are not made of a grid of heights.
+//! Surfaces in space that are not made from a grid of heights.
 
 use super::bounds::bounds;
 
@@ -7,7 +7,7 @@ use super::bounds::bounds;
 pub struct BodyMesh {
     /// The name.
     pub name: String,
-    /// Where positions are counted from: metres east and south of the world's origin.
+    /// The origin of positions: metres east and south of the world's origin.
     pub origin: [f64; 2],
     /// The vertices in metres: east, height, south.
     pub corners: Vec<[f32; 3]>,
@@ -26,7 +26,7 @@ impl BodyMesh {
         27 * self.corners.len() as u64 + 12 * self.triangles.len() as u64
     }
 
-    /// The least and the greatest of each coordinate.
+    /// The minimum and the maximum of each coordinate.
     #[must_use]
     pub fn bounds(&self) -> [[f32; 3]; 2] {
         bounds(&self.corners)

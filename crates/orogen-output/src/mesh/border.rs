@@ -11,7 +11,7 @@ pub(super) fn polyline(heights: &[f64], max_error: f64) -> Vec<usize> {
     if count < 3 {
         return (0..count).collect();
     }
-    // The vertex from which a sample was first reached; itself if it was not.
+    // The vertex from which a sample was first reached, or the sample itself if it was not reached.
     let mut from: Vec<usize> = (0..count).collect();
     let mut reached = vec![0];
     while from[count - 1] == count - 1 {

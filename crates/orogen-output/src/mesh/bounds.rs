@@ -1,6 +1,6 @@
-//! Bounds of corners.
+//! Bounds of vertices.
 
-/// The least and the greatest of each coordinate.
+/// The minimum and the maximum of each coordinate.
 pub(super) fn bounds(corners: &[[f32; 3]]) -> [[f32; 3]; 2] {
     let bound = |pick: fn(f32, f32) -> f32, start: f32| {
         corners.iter().fold([start; 3], |all, corner| std::array::from_fn(|axis| pick(all[axis], corner[axis])))

@@ -7,16 +7,16 @@ use super::surface::Surface;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::number;
 
-/// Parts of the thickness of a wall from a vertex of the ceiling to the next, if samples are denser.
+/// Number of vertices of the ceiling per wall thickness, if samples are dense enough.
 const PARTS: f64 = 8.0;
 
-/// Factor of a side of a cell to its diagonal, rounded up.
+/// Ratio of the diagonal of a cell to its side, rounded up.
 const DIAGONAL: f64 = 1.415;
 
-/// The height of a ceiling where there must not be a cavity, in millimetres.
+/// Height of the ceiling where no cavity is allowed, in millimetres.
 const NOWHERE: f32 = -1.0;
 
-/// A ceiling in a rectangle, in millimetres.
+/// A ceiling over a rectangle, in millimetres.
 #[derive(Debug)]
 pub(super) struct Ceiling {
     /// The columns of its vertices, from west to east.
@@ -33,10 +33,10 @@ impl Ceiling {
     /// The ceiling below a surface, at least `wall` millimetres from it and from its sides.
     ///
     /// With `is_cut`, samples that are not above the base are not part of the solid: the ceiling is below 0 where it
-    /// would be less than `wall` from one.
+    /// would be less than `wall` from such a sample.
     ///
-    /// The ceiling is the lower end of balls of that radius around all samples, and as low as everywhere within a cell
-    /// of it, so that it is nowhere too high.
+    /// The ceiling is the lower envelope of balls with radius `wall` around all samples. Each vertex takes the lowest
+    /// height within a cell of it, so that the ceiling is nowhere too high.
     ///
     /// # Errors
     /// If the base or the solid is too small for such walls.
@@ -44,7 +44,7 @@ impl Ceiling {
         let grid = surface.grid;
         let cell = grid.window().cell * scale.scale;
         let sides = [grid.width(), grid.height()].map(|samples| (samples - 1) as f64 * cell);
-        // A mesh of few triangles is off by this.
+        // Maximum vertical error of a mesh with few triangles.
         let error = surface.shape.deviation(grid) * f64::from(surface.exaggeration) * scale.scale;
         if scale.base <= wall + error {
             return Err(refuse(format!(
@@ -70,8 +70,8 @@ impl Ceiling {
         };
         let (xs, mut ys) = (along(sides[0]), along(sides[1]));
         ys.reverse();
-        // The ceiling between two vertices is not above either, so each is as low as all places within this distance.
-        // Vertices are up to one and a half steps apart.
+        // The ceiling between two vertices must not be too high either, so each vertex takes the lowest height within
+        // this distance. Vertices are up to one and a half steps apart.
         let slack = (1.5 * step + 1.0) * cell * DIAGONAL;
         let reach = wall + slack;
         let (level, clear) = (scale.base as f32, if is_cut { reach + cell * DIAGONAL } else { reach });
@@ -110,12 +110,12 @@ impl Ceiling {
         Ok(Ceiling { xs: narrow(xs), ys: narrow(ys), heights: rows.concat(), cell: cell as f32 })
     }
 
-    /// The height at a position between its vertices; below 0 where there must not be a cavity. It is linear between
+    /// The height at a position between the vertices; below 0 where no cavity is allowed. It is linear between
     /// positions that are as close as samples.
     pub fn at(&self, [x, y]: [f32; 2]) -> f32 {
         let (column, row) = (self.xs.partition_point(|at| *at <= x), self.ys.partition_point(|at| *at > y));
         let [width, height] = [self.xs.len(), self.ys.len()];
-        // Between a position outside and the next one, the line around a cavity may be at either.
+        // Between a position outside and the next one, the outline of a cavity may be at either.
         let near = |side: f32, at: f32| (side - at).abs() < self.cell;
         let is_outside = column == 0
             || column == width

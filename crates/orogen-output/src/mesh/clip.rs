@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-/// The part of an edge, from either end, in which it is never cut, so that vertices on the level do not coincide with
-/// those of the triangles. The outline is off by no more than this part of an edge.
+/// The share of an edge at both ends in which it is never cut, so that vertices on the level do not coincide with
+/// vertices of the triangles. The error of the outline is at most this share of an edge.
 const MARGIN: f64 = 1.0 / 64.0;
 
 /// The number of a vertex that is not in the result.
@@ -14,17 +14,17 @@ pub(super) const NONE: u32 = u32::MAX;
 pub(super) struct Clipped {
     /// The vertices in use: those above the level, and those on it where edges are cut.
     pub corners: Vec<[f32; 3]>,
-    /// Triangles with the orientation of those that were cut.
+    /// Triangles with the orientation of the input.
     pub triangles: Vec<[u32; 3]>,
-    /// The lines around them, with the triangles to their left, edge by edge.
+    /// The edges of the outline, each with the triangles to its left.
     pub around: Vec<[u32; 2]>,
 }
 
-/// Cuts triangles at the level `z`, and keeps what is above it. `around` is the border of the triangles,
+/// Cuts triangles at the level `z`, and keeps the part above it. `around` is the border of the triangles,
 /// counter-clockwise, edge by edge.
 ///
-/// A vertex at the level counts as below it, and edges are cut inside: so if the triangles are a surface whose edges
-/// have a triangle on each side, except along the border, the result is one too.
+/// A vertex at the level counts as below it, and edges are cut strictly inside. So if each edge of the input has a
+/// triangle on both sides, except along the border, the same is true of the result.
 pub(super) fn clip(corners: &[[f32; 3]], triangles: &[[u32; 3]], around: &[[u32; 2]], z: f32) -> Clipped {
     let vertices = vec![NONE; corners.len()];
     let mut cut = Cut { corners, z, made: Vec::new(), vertices, cuts: HashMap::new() };
@@ -66,18 +66,18 @@ pub(super) fn clip(corners: &[[f32; 3]], triangles: &[[u32; 3]], around: &[[u32;
 /// Triangles divided at a level.
 #[derive(Debug)]
 pub(super) struct Parted {
-    /// The vertices of the triangles, with their numbers, and after them those on the level where edges are cut.
+    /// The vertices of the triangles, with the same numbers, followed by the vertices on the level where edges are cut.
     pub corners: Vec<[f32; 3]>,
-    /// Triangles above the level, with the orientation of those that were cut.
+    /// Triangles above the level, with the orientation of the input.
     pub above: Vec<[u32; 3]>,
-    /// Triangles below it.
+    /// Triangles below the level, with the orientation of the input.
     pub below: Vec<[u32; 3]>,
-    /// The lines between them, with those above to their left, edge by edge.
+    /// The lines between the two parts, edge by edge, with the triangles above the level to their left.
     pub between: Vec<[u32; 2]>,
 }
 
 /// Divides triangles at the level `z`. Both parts share the vertices between them, so together they are the surface
-/// that was cut; the vertices follow the rules of [`clip`].
+/// that was cut. Vertices at the level are treated as in [`clip`].
 pub(super) fn part(corners: &[[f32; 3]], triangles: &[[u32; 3]], z: f32) -> Parted {
     let vertices = (0..corners.len() as u32).collect();
     let mut cut = Cut { corners, z, made: corners.to_vec(), vertices, cuts: HashMap::new() };

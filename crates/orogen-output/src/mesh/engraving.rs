@@ -9,17 +9,18 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 /// Depth of engraved letters in millimetres, unless the wall is thin.
 const DEPTH: f32 = 0.6;
 
-/// Thickness of the solid that is left behind letters, in millimetres.
+/// Minimum thickness of the solid behind engraved letters, in millimetres.
 const BEHIND: f32 = 0.2;
 
 impl Solid {
     /// Engraves letters in the middle of the southern wall, which goes from the western to the eastern side; returns
-    /// their size in millimetres per em. Of a wall of the thickness `hollow` they take at most half.
+    /// their size in millimetres per em. In a hollow solid with walls of `hollow` millimetres, letters are at most half
+    /// as deep as the wall.
     ///
-    /// The wall is divided anew around them, so the solid stays one closed surface.
+    /// The wall is triangulated again around the letters, so the solid stays one closed surface.
     ///
     /// # Errors
-    /// If the font lacks a letter, if there are none or too many, or if the wall has no room for them.
+    /// If the font lacks a letter, if there are no letters or too many, or if the wall has no room for them.
     pub fn engrave(&mut self, text: &str, hollow: Option<f64>) -> Result<f64> {
         let depth = hollow.map_or(DEPTH, |wall| DEPTH.min(0.5 * wall as f32));
         let mut walls = self.southern_walls();
@@ -44,7 +45,7 @@ impl Solid {
         let (Some((start, rest)), true) = (lower.split_first(), upper.len() > 1) else { return Err(no_wall()) };
         let Some((end, between)) = rest.split_last() else { return Err(no_wall()) };
         let [west, east] = [*start, *end].map(|corner| self.corners[corner as usize][0]);
-        // A vertex of the lower edge below a side of the lattice would be in line with it.
+        // A vertex of the lower edge exactly below a side of the lattice would be collinear with it.
         let step = 0.1 * (parted.corners[1][0] - parted.corners[0][0]);
         let is_in_line = |x: f32| between.iter().any(|corner| self.corners[*corner as usize][0] == x);
         while is_in_line(parted.corners[0][0]) || is_in_line(parted.corners[columns - 1][0]) {
@@ -59,8 +60,8 @@ impl Solid {
             let [[a, b], [c, d]] = [&face, &floor].map(|copy| [from, to].map(|corner| copy[*corner as usize]));
             self.triangles.extend([[a, b, d], [a, d, c]]);
         }
-        // Around the lattice of the letters: down its western side, along the bottom, and up the eastern one; and along
-        // its top.
+        // Around the lattice of the letters: down its western side, along the bottom, and up the eastern side; and
+        // along its top.
         let at = |column: usize, row: usize| face[row * columns + column];
         let under: Vec<u32> = (0..rows)
             .map(|row| at(0, row))
@@ -79,7 +80,7 @@ impl Solid {
         Ok(text.size)
     }
 
-    /// The least height of the surface within this distance from the southern wall.
+    /// The minimum height of the surface within this distance from the southern wall.
     fn least_height(&self, distance: f32) -> f32 {
         let mut least = f32::INFINITY;
         for triangle in &self.triangles {

@@ -21,7 +21,7 @@ use orogen_grid::error::{Error, ErrorKind};
 
 /// A surface in one or several levels of detail, the finest first, over the same grid.
 pub struct Model<'a> {
-    /// The levels; none if there are bodies instead.
+    /// The levels; empty if there are bodies instead.
     pub levels: &'a [Surface<'a>],
     /// A PNG picture of the grid with one pixel per sample.
     pub texture: Option<&'a [u8]>,
@@ -29,11 +29,11 @@ pub struct Model<'a> {
     pub material: Option<&'a [u8]>,
     /// A PNG normal map per level, where it has one; empty if no level has one.
     pub normal_maps: &'a [Option<Vec<u8>>],
-    /// Bodies that are not made of a grid: a node each, of one material with colors by vertices.
+    /// Bodies that are not made from a grid: one node each, with one material and vertex colors.
     pub bodies: &'a [BodyMesh],
-    /// Water: a node and a translucent material each.
+    /// Water: one node and one translucent material per mesh.
     pub water: &'a [WaterMesh],
-    /// Objects: for each kind a node, a placeholder mesh and instances of it.
+    /// Objects: for each kind one node, a placeholder mesh and its instances.
     pub objects: &'a [ObjectMesh],
     /// Additional properties of the node (`extras`).
     pub extras: Map<String, Value>,
@@ -50,8 +50,8 @@ const U16: u32 = 5123;
 const U32: u32 = 5125;
 const F32: u32 = 5126;
 
-/// Base of the screen coverage down to which a level of detail is meant to be shown: 1/2 for the first, 1/4 for the
-/// next.
+/// Base of the screen coverages down to which levels of detail are meant to be shown: 1/2 for the first, 1/4 for the
+/// second, and so on.
 const COVERAGE: f64 = 0.5;
 
 /// Writes a model.
@@ -213,8 +213,9 @@ impl Arrays {
         self.accessors.len() - 1
     }
 
-    /// Interleaved vertices with these attributes: name, bytes from the start of a vertex, and type. The first one is
-    /// the position, whose least and greatest values are `bounds`; a color has four u16. Returns the primitive.
+    /// Adds interleaved vertices with these attributes: name, bytes from the start of a vertex, and type. The first
+    /// attribute is the position, whose minimum and maximum values are `bounds`; a color has four u16. Returns the
+    /// primitive.
     fn primitive(
         &mut self,
         (corners, stride): (usize, u32),
@@ -409,7 +410,7 @@ fn placed(model: &Model, mut node: Value) -> Value {
     node
 }
 
-/// A level's node. The first one refers to the others.
+/// The node of a level. The node of the first level refers to the others.
 fn node(model: &Model, level: usize) -> Value {
     let levels = model.levels.len();
     let name = if levels == 1 { "terrain".to_string() } else { format!("LOD{level}") };

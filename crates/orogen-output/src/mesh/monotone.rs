@@ -1,11 +1,11 @@
-//! Triangles of polygons between two lines from west to east.
+//! Triangulation of polygons between two lines from west to east.
 
-/// The triangles of the polygon between an upper and a lower line, counter-clockwise. Positions are along and up; both
-/// lines begin west of `start` never and end east of `end` never, go never westward, and do not touch. Vertices are
-/// indices of `at`.
+/// Triangulates the polygon between an upper and a lower line; returns counter-clockwise triangles. Vertices are
+/// indices, and `at` returns their position along the wall and up. No vertex is west of `start` or east of `end`. Both
+/// lines never go westward, and they do not touch.
 ///
-/// Every vertex is used, also those within straight lines: the edges of the triangles along the polygon are its own. By
-/// the sweep of Garey et al., "Triangulating a simple polygon" (1978).
+/// Every vertex is used, also vertices within straight lines, so the outer edges of the triangles are exactly the edges
+/// of the polygon. This is the sweep of Garey et al., "Triangulating a simple polygon" (1978).
 pub(super) fn triangles(
     at: &impl Fn(u32) -> [f64; 2],
     [start, end]: [u32; 2],
@@ -64,7 +64,7 @@ mod tests {
     use super::*;
     use std::collections::BTreeSet;
 
-    /// Checks triangles of a polygon: its area, and its own edges.
+    /// Checks the triangles of a polygon: their area and their outer edges.
     fn check(at: &[[f64; 2]], ends: [u32; 2], upper: &[u32], lower: &[u32]) {
         let made = triangles(&|vertex| at[vertex as usize], ends, upper, lower);
         assert_eq!(made.len(), upper.len() + lower.len());

@@ -1,13 +1,13 @@
-//! Scattered objects on a mesh: a placeholder for each kind, and where it stands how often.
+//! Scattered objects on a mesh: a placeholder for each kind, and its instances.
 
-/// A kind of objects: a mesh that is drawn at many places.
+/// A kind of objects: one mesh that is drawn at many positions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObjectMesh {
     /// The name of the kind.
     pub name: String,
     /// Red, green and blue in linear light: 0 to 1.
     pub color: [f32; 3],
-    /// Width of the placeholder in metres, at a size of 1. It is half as high again.
+    /// Width of the placeholder in metres, at a size of 1. Its height is 1.5 times its width.
     pub width: f32,
     /// The objects.
     pub instances: Vec<Instance>,
@@ -18,7 +18,7 @@ pub struct ObjectMesh {
 pub struct Instance {
     /// Metres from the first sample of the ground: east, height, south.
     pub position: [f32; 3],
-    /// Turn about the vertical axis in degrees, clockwise seen from above.
+    /// Rotation about the vertical axis in degrees, clockwise seen from above.
     pub turn: f64,
     /// Scale factor.
     pub size: f32,
@@ -35,7 +35,7 @@ impl ObjectMesh {
         let (half, high) = (self.width / 2.0, self.width * 1.5);
         // The sides towards south, east, north and west.
         let feet = [[-half, half], [half, half], [half, -half], [-half, -half]];
-        // Width and height of a side fix its slope, whatever its scale.
+        // The ratio of width to height determines the slope of the sides at any scale.
         let [out, up] = [3.0 / 10.0_f32.sqrt(), 1.0 / 10.0_f32.sqrt()];
         let mut corners = [[[0.0; 3]; 2]; CORNERS];
         for (k, [east, south]) in [[0.0, 1.0], [1.0, 0.0], [0.0, -1.0], [-1.0, 0.0]].into_iter().enumerate() {
@@ -52,7 +52,7 @@ impl ObjectMesh {
 }
 
 impl Instance {
-    /// The turn as a quaternion (x, y, z, w) of glTF, whose y points up.
+    /// The rotation as a quaternion (x, y, z, w) of glTF, whose y points up.
     #[must_use]
     pub fn rotation(&self) -> [f32; 4] {
         let half = -self.turn.to_radians() / 2.0;

@@ -1,11 +1,11 @@
-//! The vertices around a surface.
+//! The vertices along the border of a surface.
 
 use std::collections::BTreeMap;
 
 use super::surface::Surface;
 
 /// The vertices along each side of a surface, counter-clockwise from above: along the north, the west, the south and
-/// the east. The last of a side is the first of the next one, and stands only there.
+/// the east. The last vertex of a side is the first of the next side, and is listed only there.
 pub(super) fn sides(surface: &Surface) -> [Vec<u32>; 4] {
     let shape = surface.shape;
     let [east, south] = [surface.grid.width() - 1, surface.grid.height() - 1];

@@ -8,15 +8,15 @@ pub(super) const PIECE: usize = 1 << 14;
 /// The first byte of a triangle whose vertices are stored in full.
 const FULL: i8 = i8::MIN;
 
-/// Bits of an offset from the first vertex to another, and the largest offset.
+/// Bits of the offset from the first vertex to another one, and the largest offset.
 const STEP: u32 = 6;
 const MOST: i32 = 31;
 
 /// Triangles of samples of a tile, in order, as bytes.
 ///
 /// A triangle is usually small and close to the previous one. It then takes five bytes: the offset in columns and rows
-/// of its first vertex from the previous first vertex, one byte each, and the offsets of the others from it, six bits
-/// each. Other triangles take 13 bytes. Pieces can be read separately.
+/// of its first vertex from the previous first vertex, one byte each, and the offsets of the other two vertices from
+/// its first one, six bits each. Other triangles take 13 bytes. Pieces can be read separately.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PackedTriangles {
     bytes: Box<[u8]>,

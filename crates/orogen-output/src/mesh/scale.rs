@@ -13,8 +13,8 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// The scale of a solid whose longer side has a size, on a base of a thickness, both in millimetres; its lowest
-    /// point is that of the surface, or a level in metres at which it is cut.
+    /// The scale of a solid with this length of the longer side on a base of this thickness, both in millimetres. Its
+    /// lowest point is the lowest sample of the surface, or `cut`, the level in metres at which the surface is cut.
     pub fn new(surface: &Surface, [size, base]: [f64; 2], cut: Option<f64>) -> Scale {
         let window = surface.grid.window();
         let [east, south] = [window.width, window.height].map(|samples| (samples - 1) as f64 * window.cell);

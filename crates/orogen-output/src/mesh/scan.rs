@@ -149,7 +149,7 @@ impl<'a> Spans<'a> {
     }
 }
 
-/// The column at or west of an edge, row by row, exactly.
+/// The column at or west of an edge, computed exactly for one row after another.
 struct Edge {
     column: i32,
     /// The distance of the edge east of that column, in units of 1 / `down`.

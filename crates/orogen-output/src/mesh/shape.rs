@@ -12,7 +12,7 @@ use orogen_grid::triangles::falls;
 
 /// Triangles over the samples of a grid.
 ///
-/// Vertices are numbered from 0, row by row, each row from west to east. Triangles are interleaved of vertices,
+/// Vertices are numbered from 0, row by row, each row from west to east. Triangles are triples of vertices,
 /// counter-clockwise seen from above.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shape {
@@ -49,8 +49,8 @@ impl Part {
 }
 
 impl Shape {
-    /// Every `step`-th column and row of a grid and always the last ones; two triangles for each cell between them,
-    /// along the diagonal with the smaller difference in height. With a step of 1, every sample.
+    /// Every `step`-th column and row of a grid and always the last ones, with two triangles for each cell between
+    /// them, split along the diagonal with the smaller difference in height. With a step of 1, every sample.
     ///
     /// Triangles that touch a sample that is not finite are omitted, and so are vertices without triangles.
     ///
@@ -189,7 +189,7 @@ impl Shape {
         }
     }
 
-    /// Calls `each` with each triangle of a piece, in order. `grid` must be the one that the shape was made for.
+    /// Calls `each` with each triangle of a piece, in order. `grid` must be the grid that the shape was made for.
     pub(crate) fn piece(&self, grid: &Grid, piece: usize, mut each: impl FnMut([u32; 3])) {
         match &self.kind {
             Kind::Lattice { columns, rows } => {

@@ -1,4 +1,4 @@
-//! Closed solids of surfaces, to print.
+//! Closed solids for printing, made from surfaces.
 //!
 //! Millimetres; x east, y north, z up, with the south-western corner of the window at the origin. The surface is closed
 //! by walls and a flat base, so that the solid is watertight: every edge has a triangle on both sides, and every normal
@@ -28,32 +28,33 @@ pub const LEGIBLE: f64 = 4.0;
 pub struct Print {
     /// Length of the longer side in millimetres, between the centers of its first and last sample.
     pub size: f64,
-    /// Thickness of the base in millimetres, below the lowest sample or the level of the cut; 3 by default.
+    /// Thickness of the base in millimetres, below the lowest sample or the cut level; 3 by default.
     pub base: f64,
-    /// The level in metres, before exaggeration, above which the land is kept; all of it by default.
+    /// The level in metres, before exaggeration, above which the land is kept; by default all land is kept.
     pub cut: Option<f64>,
-    /// Least thickness of the walls and the ceiling around a cavity that is open below, in millimetres; without it the
+    /// Minimum thickness in millimetres of the walls and the ceiling around a cavity that is open below; without it the
     /// solid is full.
     pub hollow: Option<f64>,
 }
 
 impl Print {
-    /// A solid with a longer side of this many millimetres.
+    /// A solid whose longer side has this length in millimetres.
     pub fn new(size: f64) -> Print {
         Print { size, base: 3.0, cut: None, hollow: None }
     }
 
-    /// The same with a base of this thickness, in millimetres.
+    /// Sets the thickness of the base, in millimetres.
     pub fn with_base(self, base: f64) -> Print {
         Print { base, ..self }
     }
 
-    /// The same of the land above a level in metres alone: its outline is that of the land, and its base begins there.
+    /// Keeps only the land above a level in metres. The outline of the solid follows the land, and its base begins at
+    /// the level.
     pub fn with_cut(self, level: f64) -> Print {
         Print { cut: Some(level), ..self }
     }
 
-    /// The same with a cavity, and walls of at least this thickness in millimetres.
+    /// Adds a cavity, with walls of at least this thickness in millimetres.
     pub fn with_hollow(self, wall: f64) -> Print {
         Print { hollow: Some(wall), ..self }
     }
@@ -124,13 +125,13 @@ impl Solid {
         Ok(solid)
     }
 
-    /// Adds raised letters in the middle of the southern wall, or of that straight piece of it where they are largest;
-    /// returns their size in millimetres per em.
+    /// Adds raised letters in the middle of the southern wall, or of its straight piece where they are largest; returns
+    /// their size in millimetres per em.
     ///
-    /// They are bodies of their own that reach into the wall, which printers' programs join with it.
+    /// The letters are separate bodies that reach into the wall; slicers join them with it.
     ///
     /// # Errors
-    /// If the font lacks a letter, if there are none or too many, or if no wall has room for them.
+    /// If the font lacks a letter, if there are no letters or too many, or if no wall has room for them.
     pub fn letter(&mut self, text: &str) -> Result<f64> {
         let text = WallText::new(text, &self.southern_walls(), self.size()[0], false)?;
         let mut front = text.letters();
@@ -142,7 +143,7 @@ impl Solid {
 
     /// The straight walls along the southern side of the window, from west to east.
     pub(super) fn southern_walls(&self) -> Vec<StraightWall> {
-        // One of the two triangles of a piece of a wall has its upper edge.
+        // In each piece of a wall, one of the two triangles contains its upper edge.
         let mut pieces: Vec<StraightWall> = Vec::new();
         for triangle in &self.triangles {
             let corners = triangle.map(|corner| self.corners[corner as usize]);
@@ -181,16 +182,16 @@ impl Solid {
         }
     }
 
-    /// Adds land above a cut with walls, a base, and a cavity in each part that has room for it, open below.
+    /// Adds land above a cut with walls, a base, and a cavity that is open below in each part that has room for one.
     ///
-    /// The lines around the cavities divide the triangles of the land: those outside have a copy on the ground, those
-    /// inside one at the ceiling.
+    /// The outlines of the cavities divide the triangles of the land: triangles outside have a copy on the ground,
+    /// triangles inside have a copy at the ceiling.
     ///
     /// # Errors
-    /// If the base is too thin, no part has room, or the surface is not one of all samples.
+    /// If the base is too thin, no part has room, or the surface does not use all samples.
     fn extrude_hollow(&mut self, land: &Clipped, surface: &Surface, scale: &Scale, wall: f64) -> Result<()> {
         let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
-        // The ceiling is linear between vertices, which must not be far apart.
+        // The ceiling is linear between vertices, so they must not be far apart.
         if surface.shape.corners() != surface.grid.data().len() {
             return refuse(
                 "a hollow model of the land above a cut has a vertex at every sample; leave out --max-error, or use a larger cell".into(),
@@ -198,7 +199,7 @@ impl Solid {
         }
         let ceiling = Ceiling::of(surface, scale, wall, true)?;
         let under: Vec<[f32; 3]> = land.corners.iter().map(|[x, y, _]| [*x, *y, ceiling.at([*x, *y])]).collect();
-        // Ceilings that are not beside a wall are above the base less the wall.
+        // Ceilings that are not next to a wall are above the base minus the wall.
         let parted = part(&under, &land.triangles, (0.5 * (scale.base - wall)) as f32);
         if parted.above.is_empty() {
             return refuse(format!(
@@ -221,7 +222,7 @@ impl Solid {
         Ok(())
     }
 
-    /// Adds triangles turned over, with a vertex for each of theirs; returns the numbers of these.
+    /// Adds flipped triangles, with a copy of each vertex; returns the numbers of the copies.
     fn face_down(&mut self, corners: &[[f32; 3]], triangles: &[[u32; 3]], up: impl Fn(f32) -> f32) -> Vec<u32> {
         let mut numbers = vec![NONE; corners.len()];
         for triangle in triangles {
@@ -253,7 +254,7 @@ impl Solid {
         Solid { corners, triangles }
     }
 
-    /// Checks that more vertices can be numbered.
+    /// Checks that this many more vertices can be numbered.
     pub(super) fn numbered(&self, more: usize) -> Result<()> {
         match u32::try_from(self.corners.len() + more) {
             Ok(_) => Ok(()),
@@ -264,12 +265,12 @@ impl Solid {
         }
     }
 
-    /// Adds walls below a surface, whose border is this line around it, counter-clockwise from above, and a base.
+    /// Adds walls below a surface, and a base. `around` is the border of the surface, counter-clockwise from above.
     fn close(&mut self, around: &[u32]) {
         self.reserve(around.len() + 1, 3 * around.len());
         let below = self.drop(around);
         self.wall(around, &below);
-        // All of the border is visible from a point in the middle of the base.
+        // The whole border is visible from a point in the middle of the base.
         let [_, [east, north, _]] = self.bounds();
         let middle = self.push([0.5 * east, 0.5 * north, 0.0]);
         for (from, to) in pairs(&below) {
@@ -295,7 +296,7 @@ impl Solid {
                 self.triangles.extend([[nw, se, sw], [nw, ne, se]]);
             }
         }
-        // The rim on the ground, side by side: its outer line, and its inner one below the ceiling's border.
+        // The rim on the ground, side by side: its outer line, and its inner line below the ceiling's border.
         let inner = ceiling
             .sides()
             .map(|side| side[..side.len() - 1].iter().map(|corner| first + corner).collect::<Vec<u32>>());
@@ -317,7 +318,7 @@ impl Solid {
         }
     }
 
-    /// Adds the triangles between a side of the base and the parallel one of the cavity, facing down.
+    /// Adds the triangles between a side of the base and the parallel side of the cavity, facing down.
     fn rim(&mut self, outer: &[u32], inner: &[u32]) {
         let share = |solid: &Solid, line: &[u32], k: usize| {
             let [start, end, here] =
@@ -339,13 +340,13 @@ impl Solid {
         }
     }
 
-    /// Makes room for more vertices and triangles, and no more than that.
+    /// Reserves exact capacity for more vertices and triangles.
     pub(super) fn reserve(&mut self, corners: usize, triangles: usize) {
         self.corners.reserve_exact(corners);
         self.triangles.reserve_exact(triangles);
     }
 
-    /// Adds the points of the ground below vertices.
+    /// Adds the points on the ground below vertices; returns their numbers.
     fn drop(&mut self, corners: &[u32]) -> Vec<u32> {
         corners
             .iter()
@@ -356,7 +357,7 @@ impl Solid {
             .collect()
     }
 
-    /// Adds the wall between a closed line and the one below it. Its outside is to the right of the line.
+    /// Adds the wall between a closed line and the line below it. Its outside is to the right of the line.
     fn wall(&mut self, above: &[u32], below: &[u32]) {
         for ((from, to), (from_below, to_below)) in pairs(above).zip(pairs(below)) {
             self.wall_piece([from, to], [from_below, to_below]);
@@ -372,7 +373,7 @@ impl Solid {
         (self.corners.len() - 1) as u32
     }
 
-    /// The least and the greatest of each coordinate.
+    /// The minimum and the maximum of each coordinate.
     #[must_use]
     pub fn bounds(&self) -> [[f32; 3]; 2] {
         bounds(&self.corners)

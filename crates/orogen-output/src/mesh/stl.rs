@@ -11,7 +11,7 @@ use super::surface::push;
 use orogen_grid::error::{Error, ErrorKind};
 use orogen_grid::progress::Progress;
 
-/// Triangles that are written by one thread at a time.
+/// Number of triangles that a thread writes at a time.
 const PIECE: usize = 1 << 13;
 
 /// Writes a solid.
@@ -46,7 +46,7 @@ pub fn write(out: &mut dyn Write, solid: &Solid, progress: &Progress) -> io::Res
     Ok(())
 }
 
-/// Appends a facet: its normal, its corners, and no attributes.
+/// Appends a facet: its normal, its vertices, and no attributes.
 fn facet(corners: [[f32; 3]; 3], bytes: &mut Vec<u8>) {
     let [a, b, c] = corners.map(|corner| corner.map(f64::from));
     let [u, v]: [[f64; 3]; 2] = [std::array::from_fn(|i| b[i] - a[i]), std::array::from_fn(|i| c[i] - a[i])];

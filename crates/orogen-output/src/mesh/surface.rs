@@ -20,7 +20,7 @@ pub struct Surface<'a> {
     pub halo: &'a Halo,
     /// The triangles.
     pub shape: &'a Shape,
-    /// Factor of the heights.
+    /// Factor that heights are multiplied by.
     pub exaggeration: f32,
     /// The colors of vertices, on request.
     pub painter: Option<&'a Painter>,
@@ -45,7 +45,7 @@ pub struct Corner {
     pub color: [u8; 3],
 }
 
-/// The properties of vertices, beside their position, that a format needs.
+/// The properties of vertices, in addition to their position, that a format needs.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Wanted {
     /// Normals.
@@ -66,7 +66,7 @@ struct Scratch {
 }
 
 impl Surface<'_> {
-    /// Writes the bytes that `emit` makes of each vertex, in order.
+    /// Writes the bytes that `emit` appends for each vertex, in order.
     pub fn corners(
         &self,
         out: &mut dyn Write,
@@ -86,7 +86,7 @@ impl Surface<'_> {
         Ok(())
     }
 
-    /// Writes the bytes that `emit` makes of each triangle, in order.
+    /// Writes the bytes that `emit` appends for each triangle, in order.
     pub fn triangles(&self, out: &mut dyn Write, emit: impl Fn([u32; 3], &mut Vec<u8>) + Sync) -> io::Result<()> {
         let pieces: Vec<usize> = (0..self.shape.pieces()).collect();
         let each = self.shape.triangles() / pieces.len().max(1);
@@ -104,7 +104,7 @@ impl Surface<'_> {
         Ok(())
     }
 
-    /// The bounds of the vertices: east, height, south.
+    /// The bounds of the vertices: minimum and maximum of east, height and south, in metres.
     #[must_use]
     pub fn bounds(&self) -> [[f32; 3]; 2] {
         let rows = self.shape.rows();

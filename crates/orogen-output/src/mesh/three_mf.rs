@@ -11,7 +11,7 @@ use super::solid::Solid;
 use orogen_grid::progress::Progress;
 use orogen_io::format::zip_writer::ZipWriter;
 
-/// Vertices or triangles that are written by one thread at a time.
+/// Number of vertices or triangles that a thread writes at a time.
 const PIECE: usize = 1 << 12;
 
 const TYPES: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\

@@ -5,7 +5,7 @@ use orogen_grid::grid::Grid;
 /// Samples per cache line.
 const LINE: usize = 16;
 
-/// A sample of a tile, as a number made of its column and row. Samples are ordered row by row.
+/// A sample of a tile, as a number that combines its column and row. Samples are ordered row by row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Sample(u32);
 
@@ -29,21 +29,21 @@ impl Sample {
     /// numbers.
     pub const ROW: u32 = 1 << 16;
 
-    /// Its number.
+    /// The number of the sample.
     #[inline(always)]
     pub fn number(self) -> u32 {
         self.0
     }
 
-    /// Its column and row.
+    /// The column and row of the sample.
     #[inline(always)]
     pub fn place(self) -> [i32; 2] {
         [(self.0 % Sample::ROW) as i32, (self.0 / Sample::ROW) as i32]
     }
 }
 
-/// The samples of a part of a grid. Rows are an odd number of cache lines apart, so that neighboring rows do not map
-/// to the same cache sets. A register can be read from any sample.
+/// The samples of a part of a grid. Rows are an odd number of cache lines apart, so that neighboring rows do not map to
+/// the same cache sets. A SIMD register can be loaded from any sample.
 pub(super) struct Tile {
     heights: Vec<f32>,
     /// Samples between the starts of rows.

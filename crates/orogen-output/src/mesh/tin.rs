@@ -11,7 +11,8 @@
 //!   The order in which distant blocks are refined has little effect.
 //!
 //! The border is fixed beforehand from its own samples ([`super::border`]) and never refined, so tiles fit along their
-//! edges. All decisions use exact integers, or f32 values that are the same at every SIMD level, and so is the result.
+//! edges. All decisions use exact integers, or f32 values that are the same at every SIMD level, so the result is the
+//! same too.
 
 use std::collections::BinaryHeap;
 
@@ -21,9 +22,9 @@ use super::tile::{Sample, Tile};
 use orogen_grid::error::Result;
 use orogen_grid::progress::Progress;
 
-/// Instead of a twin: the edge belongs to the border.
+/// In place of a twin: the edge belongs to the border.
 const OUTSIDE: u32 = u32::MAX;
-/// Instead of a twin: the triangle beyond is about to be added and will link the two.
+/// In place of a twin: the triangle beyond is about to be added and will link the two.
 const LATER: u32 = u32::MAX - 1;
 
 /// Side of a block in samples, as a power of two.
@@ -42,7 +43,7 @@ pub(super) struct Workspace {
     queue: Queue,
 }
 
-/// Triangulates a tile of at least 2 x 2 finite samples with an error of at most `max_error`. Returns interleaved of
+/// Triangulates a tile of at least 2 x 2 finite samples with an error of at most `max_error`. Returns triples of
 /// samples, each clockwise in the picture.
 ///
 /// # Errors
@@ -63,7 +64,7 @@ pub(super) fn triangulate<'a>(
 #[derive(Clone, Copy)]
 struct Triangle {
     corners: [Sample; 3],
-    /// The same edges in the neighboring triangles.
+    /// The opposite edges in the neighboring triangles.
     twins: [u32; 3],
     /// Its sample with the largest error, or [`Worst::UNKNOWN`].
     worst: Worst,

@@ -1,4 +1,4 @@
-//! Letters on a wall, which stand out of it or are engraved.
+//! Letters on a wall, raised or engraved.
 
 use std::ops::RangeInclusive;
 
@@ -10,7 +10,7 @@ use crate::map::text::{BuiltinFont, Face, Style};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::number;
 
-/// Pixels of an em in which letters are drawn.
+/// Resolution in which letters are drawn, in pixels per em.
 const EM: f32 = 40.0;
 
 /// Maximum number of letters.
@@ -21,7 +21,7 @@ const MAX_SIZE: f64 = 12.0;
 const OF_HEIGHT: f64 = 0.8;
 const OF_LENGTH: f64 = 0.9;
 
-/// The largest model in sizes of its letters: beyond it their outlines would not be exact.
+/// The longest model, in multiples of its letter size; beyond it the outlines would not be exact.
 const MAX_LENGTH: f64 = 800.0;
 
 /// A straight wall, in millimetres from the window's south-western corner.
@@ -29,30 +29,30 @@ const MAX_LENGTH: f64 = 800.0;
 pub(super) struct StraightWall {
     pub west: f32,
     pub east: f32,
-    /// The least height of its upper edge.
+    /// The minimum height of its upper edge.
     pub height: f32,
 }
 
-/// A line of letters as triangles: along the wall, up, and in the third coordinate how much of it is ink; letters are
-/// where that is above [`EDGE`].
+/// A line of letters as triangles. Coordinates are along the wall, up, and the coverage by ink, 0 to 1; letters are
+/// where the coverage is above [`EDGE`].
 pub(super) struct WallText {
     corners: Vec<[f32; 3]>,
-    /// Number of vertices along the wall and up it; they go row by row from the top, and there is no ink in those at
-    /// the border.
+    /// Number of vertices along the wall and up. They are stored row by row from the top; vertices at the border have
+    /// no ink.
     pub lattice: [usize; 2],
     /// Size of the letters in millimetres per em.
     pub size: f64,
 }
 
-/// The third coordinate at the edge of a letter.
+/// The coverage at the outline of a letter.
 const EDGE: f32 = 0.5;
 
 impl WallText {
-    /// A line of text in the middle of that wall where it is largest, of a model of this length in millimetres. With
-    /// `is_within` all of its letters are within the height of the wall, otherwise the capitals.
+    /// A line of text in the middle of the wall where it is largest, for a model of this length in millimetres. With
+    /// `is_within`, all letters fit within the height of the wall, otherwise only the capitals.
     ///
     /// # Errors
-    /// If the font lacks a letter, there are none or too many, or no wall has room for them.
+    /// If the font lacks a letter, there are no letters or too many, or no wall has room for them.
     pub fn new(text: &str, walls: &[StraightWall], model: f64, is_within: bool) -> Result<WallText> {
         let text = text.trim();
         let font = BuiltinFont::new()?;
@@ -64,7 +64,7 @@ impl WallText {
         }
         let style = Style { face: Face::Bold, size: EM, ink: [0; 3] };
         let wide = f64::from(font.width(text, style));
-        // Room for what stands out of the line, and an empty border.
+        // Room for strokes that overhang the line, and an empty border.
         let (left, baseline) = (EM / 2.0, 1.5 * EM);
         let mut canvas = Canvas::new((wide + f64::from(EM)) as usize + 1, (2.0 * EM) as usize, [255; 3]);
         font.write(&mut canvas, left, baseline as i64, text, style);
@@ -72,7 +72,7 @@ impl WallText {
             canvas.get(column as i64, row as i64).map_or(0.0, |[grey, ..]| 1.0 - f32::from(grey) / 255.0)
         };
         let [columns, rows] = inked(canvas.width(), canvas.height(), ink);
-        // The middle of the capitals is that of the wall; this much of an em is above and below it.
+        // The capitals are centered on the wall; this much of an em is above and below their middle.
         let middle = f64::from(baseline) - 0.36 * f64::from(EM) - 0.5;
         let of_height = match is_within {
             true => {
@@ -85,7 +85,7 @@ impl WallText {
             let [length, height] = [wall.east - wall.west, wall.height].map(f64::from);
             MAX_SIZE.min(of_height * height).min(OF_LENGTH * length * f64::from(EM) / wide)
         };
-        // The first of equals.
+        // The first of equal ones.
         let Some(wall) = walls.iter().rev().max_by(|a, b| fitted(a).total_cmp(&fitted(b))) else {
             return Err(refuse(
                 "there is no straight side for the letters of --text: the land above the cut does not reach the southern side of the window"

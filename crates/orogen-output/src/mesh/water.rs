@@ -2,7 +2,7 @@
 
 use orogen_grid::grid::Grid;
 
-/// A mesh of water, with vertices in metres from the first sample of the ground: east, height, south.
+/// A mesh of water. Vertices are in metres from the first sample of the ground: east, height, south.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WaterMesh {
     /// The name.
@@ -34,8 +34,8 @@ impl WaterMesh {
         WaterMesh { name, color, corners: Vec::new(), triangles: Vec::new() }
     }
 
-    /// Adds a ribbon on the ground: at each cross-section, both banks and the middle are at the height of the river, or
-    /// `lift` metres above the ground where that is higher.
+    /// Adds a ribbon on the ground. At each cross-section, both banks and the middle are at the height of the river, or
+    /// `lift` metres above the ground if that is higher.
     pub fn lay(&mut self, ribbon: &Ribbon, ground: &Grid, lift: f64) {
         let points = resampled(&ribbon.points);
         if points.len() < 2 {
@@ -72,8 +72,8 @@ impl WaterMesh {
         }
     }
 
-    /// Covers all squares between samples that have a wet corner with level water. The ground beside it rises above the
-    /// water, so the shore is the intersection of both meshes. `level` returns the water level at a sample.
+    /// Covers all squares between samples that have a wet corner with level water. The ground next to it rises above
+    /// the water, so the shore is the intersection of both meshes. `level` returns the water level at a sample.
     pub fn cover(&mut self, ground: &Grid, level: impl Fn(usize, usize) -> Option<f32>) {
         let cell = ground.window().cell;
         let at = |i: usize| (i as f64 * cell) as f32;

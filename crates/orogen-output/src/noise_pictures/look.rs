@@ -8,7 +8,7 @@ use orogen_io::format::png::Pixel;
 use super::slice::Slice;
 use super::texture::{Painter, Texture};
 
-/// Height of the ground of a normal map, in wavelengths, which gives moderate slopes.
+/// Height of the ground of a normal map, in wavelengths; chosen for moderate slopes.
 const RELIEF: f64 = 0.25;
 
 /// The kind of drawing.
@@ -43,7 +43,7 @@ impl Look {
 }
 
 impl Drawing {
-    /// A drawing of a slice, with 16 bits per component if `deep` and not a texture.
+    /// A drawing of a slice, with 16 bits per component if `deep` is set and it is not a texture.
     #[must_use]
     pub fn new(slice: Slice, look: Look, deep: bool) -> Drawing {
         Drawing { slice, deep, look, painter: Painter::default() }
@@ -61,7 +61,7 @@ impl Drawing {
         }
     }
 
-    /// Draws some rows, at a depth or of 2D noise.
+    /// Draws some rows of a slice at `depth`, or of 2D noise if it is `None`.
     pub fn paint(&self, depth: Option<f64>, rows: Range<usize>, bytes: &mut [u8]) {
         let slice = Slice { depth, ..self.slice };
         let mut value = vec![0.0; rows.len() * slice.width];
@@ -82,7 +82,7 @@ impl Drawing {
         }
     }
 
-    /// Numbers from -1 to 1 mapped to all levels.
+    /// Maps numbers from -1 to 1 to all gray levels.
     fn numbers(&self, numbers: &[f32], bytes: &mut [u8]) {
         let levels = Levels::new(-1.0, 1.0);
         match self.deep {

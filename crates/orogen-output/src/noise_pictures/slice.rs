@@ -7,11 +7,11 @@ use orogen_noise::{Depth, Fractal, LengthMismatch, Points, TileError, Tiled};
 
 use super::fit::{Fit, Lengths};
 
-/// Samples that a thread computes at a time.
+/// Number of samples that a thread computes at a time.
 const PIECE: usize = 1 << 16;
 
-/// 2D noise, or a slice of 3D noise. Sample (i, j) is at (i, stretch j), unless the picture repeats: then steps are
-/// adjusted slightly, so that a whole number of wavelengths fits.
+/// 2D noise, or a slice of 3D noise. Sample (i, j) is at (i, stretch j). If the picture repeats, steps are adjusted
+/// slightly, so that a whole number of wavelengths fits.
 #[derive(Debug, Clone, Copy)]
 pub struct Slice {
     /// The noise.
@@ -85,7 +85,7 @@ impl Slice {
         (0..self.width).map(|i| i as f64 * step).collect()
     }
 
-    /// The southings of the rows of a piece that starts `skip` rows into `rows` and has `samples`.
+    /// The southings of the `samples` of a piece that starts `skip` rows after the start of `rows`.
     fn southings(&self, rows: &Range<usize>, skip: usize, samples: usize) -> Vec<f64> {
         let first = rows.start + skip;
         let step = self.stretch * self.fit().steps[1];

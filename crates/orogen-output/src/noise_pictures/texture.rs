@@ -38,7 +38,7 @@ impl Texture {
         }
     }
 
-    /// How it is made, in a phrase.
+    /// A short description of how it is made.
     #[must_use]
     pub const fn about(self) -> &'static str {
         match self {
@@ -145,7 +145,7 @@ impl Painter {
             let color = match texture {
                 Texture::Clouds => self.sky.at(1.0 - libm::expf(-DENSITY * (value - COVER).max(0.0))),
                 Texture::Marble => {
-                    // In f64 until it is reduced to one wave: a wide picture has the same veins at its far end.
+                    // In f64 until it is reduced to one wave, so that a wide picture has the same veins at its far end.
                     let waves = (k % slice.width) as f64 / wavelength;
                     let turns = (waves - waves.floor()) as f32 + TURBULENCE * (value + 1.0) / 2.0;
                     self.stone.at(0.5 + 0.5 * libm::sinf(TAU * (turns - turns.floor())))

@@ -57,7 +57,7 @@ impl CameraSpec {
     }
 }
 
-/// The box that must be in the picture when a camera's distance is chosen automatically, in cells.
+/// The box that must be visible when the distance of a camera is chosen automatically, in cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
     /// The north-western lower corner.
@@ -82,7 +82,7 @@ impl Frame {
     }
 }
 
-/// Margin of the land's frame on each side, as a share of the picture, when the distance is chosen automatically.
+/// Margin around the land on each side, as a share of the picture, when the distance is chosen automatically.
 const MARGIN: f64 = 0.02;
 
 /// Minimum height of a camera above the ground, in cells.
@@ -101,7 +101,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A camera over the land. `frame` is used if the distance is chosen automatically.
+    /// A camera over the land. `frame` is only used if the distance is chosen automatically.
     #[must_use]
     pub fn new(spec: &CameraSpec, relief: &Relief, frame: &Frame) -> Camera {
         let half = libm::tan(spec.fov.to_radians() / 2.0);
@@ -119,7 +119,8 @@ impl Camera {
                     Some(distance) => distance / relief.cell(),
                     None => look.framing(frame, out),
                 };
-                // Seen from above, the near half takes more of the picture, so the frame's center is not the land's.
+                // From above, the near half takes more of the picture, so the center of the frame differs from the
+                // center of the land.
                 let mut camera = Camera { eye: middle + out * distance, ..look };
                 camera.center(frame);
                 camera
@@ -137,8 +138,8 @@ impl Camera {
         camera
     }
 
-    /// The distance, in metres, from which all of `frame` is visible from each of these directions: for pictures that
-    /// turn around the land at a constant distance. Size and angle of view are those of `spec`.
+    /// The distance, in metres, from which all of `frame` is visible from each of these directions: for a series of
+    /// pictures around the land at a constant distance. `spec` gives the size and the angle of view.
     pub fn distance(sides: impl Iterator<Item = [f64; 2]>, spec: &CameraSpec, relief: &Relief, frame: &Frame) -> f64 {
         let middle = frame.middle();
         let away = sides.map(|[azimuth, elevation]| {
@@ -149,8 +150,8 @@ impl Camera {
         away.fold(0.0, f64::max) * relief.cell()
     }
 
-    /// A camera at `eye` that looks in the direction `ahead`; `azimuth` is its own direction from the target, used if
-    /// `ahead` is vertical.
+    /// A camera at `eye` that looks in the direction `ahead`. `azimuth` is the direction from the target to the camera,
+    /// used if `ahead` is vertical.
     fn towards(eye: Vector, ahead: Vector, azimuth: f64, wide: [f64; 2]) -> Camera {
         let (sin, cos) = libm::sincos(azimuth.to_radians());
         // Horizontal, to the right of a viewer who looks against `azimuth`.
@@ -210,7 +211,7 @@ impl Camera {
         }
     }
 
-    /// Raises a camera that is below the ground; outside of the land, above the bottom of the land.
+    /// Raises a camera that is below the ground or, outside of the land, below the bottom of the land.
     fn lift(&mut self, relief: &Relief, frame: &Frame) {
         let [east, south] = relief.reach();
         let inside = (0.0..=east).contains(&self.eye.x) && (0.0..=south).contains(&self.eye.y);
@@ -231,7 +232,7 @@ impl Camera {
         self.eye
     }
 
-    /// The number of metres by which it was raised above ground and water; `None` if it was not.
+    /// The distance in metres by which the camera was raised above ground and water; `None` if it was not.
     #[must_use]
     pub fn lifted(&self) -> Option<f64> {
         self.lifted
@@ -251,7 +252,7 @@ impl Camera {
     }
 }
 
-/// A coordinate folded into 0 to `reach` by mirrors at both ends, and its direction there: 1 or -1.
+/// Folds a coordinate into 0 to `reach` by mirrors at both ends; returns it with its direction there: 1 or -1.
 pub(super) fn folded(x: f64, reach: f64) -> (f64, f64) {
     let turn = x.rem_euclid(2.0 * reach);
     if turn <= reach { (turn, 1.0) } else { (2.0 * reach - turn, -1.0) }

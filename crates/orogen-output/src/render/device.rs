@@ -1,4 +1,4 @@
-//! Devices that paint pictures in place of the processor.
+//! Devices that paint pictures instead of the CPU.
 
 use std::fmt;
 use std::ops::Range;
@@ -32,7 +32,7 @@ pub trait RenderDevice: SkylightDevice + Send + Sync {
 pub enum Painted {
     /// All rows were painted.
     Done,
-    /// The device could not paint them, and why. The bytes have no meaning.
+    /// The device could not paint them, for this reason. The content of the bytes is unspecified.
     Refused(String),
 }
 

@@ -1,11 +1,11 @@
 //! A scene as named numbers and grids, for renderers on other devices.
 //!
-//! What such a renderer shares with this one is here and nowhere else, so that the two cannot drift apart: constants,
-//! the numbers of the scene and of the camera, and the grids of the land. Names and lengths of constants and numbers do
-//! not depend on the scene.
+//! Everything that such a renderer shares with this one is defined only here, so that the two stay consistent:
+//! constants, the numbers of the scene and of the camera, and the grids of the land. Names and lengths of constants and
+//! numbers do not depend on the scene.
 //!
-//! Positions are relative to an origin near the camera, so that single precision suffices: an error of a position is a
-//! share of its distance from the camera, like the width of a pixel.
+//! Positions are relative to an origin near the camera, so that single precision suffices: the rounding error of a
+//! position is proportional to its distance from the camera, like the width of a pixel.
 
 use std::borrow::Cow;
 
@@ -29,15 +29,15 @@ use super::water::{BENDS, BOTTOM, DARK, DEEP, LAKE_BOTTOM, LAKE_DEEP, LAKE_TAKES
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct SceneData<'a> {
-    /// Constants of the renderer, one number or three of a color each.
+    /// Constants of the renderer: one number each, or three for a color.
     pub constants: Vec<(&'static str, Vec<f32>)>,
-    /// Whole constants of the renderer.
+    /// Integer constants of the renderer.
     pub counts: Vec<(&'static str, u32)>,
     /// Numbers of the scene.
     pub numbers: Vec<(&'static str, Vec<f32>)>,
-    /// Whole numbers of the scene.
+    /// Integers of the scene.
     pub integers: Vec<(&'static str, Vec<i32>)>,
-    /// Grids of the scene, each in parts that follow each other.
+    /// Grids of the scene, each as a sequence of parts to concatenate.
     pub grids: Vec<(&'static str, Vec<Cow<'a, [f32]>>)>,
 }
 
@@ -47,10 +47,10 @@ const LEVELS: usize = 32;
 /// Entries of each of the two ramps of the map's colors: up to the sea level, and above it.
 const RAMP: usize = 4096;
 
-/// What stands for an infinite number: a device may compute as if there were none.
+/// Replaces infinity: a device may compute as if there were no infinite numbers.
 const FAR: f64 = 1e30;
 
-/// The point that positions are relative to: a whole column and row, and a z.
+/// The origin of positions: a whole column and row, and a z.
 #[derive(Debug, Clone, Copy)]
 struct Origin {
     cell: [i32; 2],
@@ -168,7 +168,7 @@ impl Scene {
         data.number("OCTAVES", &list(halves.collect()));
         let waves = (1..).zip(WAVES).map(|(kind, (wave, steep))| noise(kind, wave, STRETCH, steep));
         data.number("WAVES", &list(waves.collect()));
-        // Noises of kinds 4 to 7 over other quantities than positions.
+        // Noises of kinds 4 to 7 are sampled over other quantities than positions.
         let plain = (4..8).map(|kind| grain_numbers(&GrainMap::new(kind, [1.0; 2], [0.0; 2]), [1.0, 0.0]));
         data.number("PLAIN", &list(plain.collect()));
         data.grid("GRAIN", [ground.grain.samples.as_flattened().into()]);
@@ -205,7 +205,7 @@ impl Scene {
 }
 
 impl Lighting {
-    /// The light without any land, for renderers that have their own: in haze of this density over a block with this
+    /// The light without any land, for renderers that draw their own: with haze of this density over a block with this
     /// diagonal and highest ground, and on the sea of land with this cell in metres.
     #[must_use]
     pub fn data(&self, haze: f64, [across, highest]: [f64; 2], cell: f64) -> SceneData<'_> {
@@ -232,7 +232,7 @@ impl Lighting {
     }
 }
 
-/// What is around the land, for shaders.
+/// Codes for the surroundings of the land, for shaders.
 const AROUND_TABLE: u32 = 0;
 const AROUND_SEA: u32 = 1;
 const AROUND_MIRRORS: u32 = 2;
@@ -274,7 +274,7 @@ impl<'a> SceneData<'a> {
         let [above, less, square, linear, rest] = CURVE;
         self.constants = vec![
             one("FAR", FAR as f32),
-            // No water is lower than the sentinel of patches without it; a device may not know infinite numbers.
+            // The sentinel of patches without water must be below all water; a device may not support infinite numbers.
             one("DRY", DRY.max(-FAR as f32)),
             one("MEAN_ALBEDO", MEAN_ALBEDO),
             one("SEA_LEVEL_TOLERANCE", LEVEL as f32),

@@ -77,7 +77,7 @@ impl Grain {
 
 /// A noise of [`Grain`] as an affine map from positions to the tile: (u, v) = matrix (x, y) + offset, in samples.
 ///
-/// The offset is that of an origin near the camera, reduced by whole tiles, so that single precision suffices.
+/// The offset refers to an origin near the camera and is reduced by whole tiles, so that single precision suffices.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct GrainMap {
     pub matrix: [[f64; 2]; 2],

@@ -202,7 +202,7 @@ impl GroundCover {
             }
             let scale = f64::from(self.cell / wavelength);
             let bump = self.grain.at(site.x * scale, site.y * scale, 8 + u32::from(octave));
-            // The absolute value gives creases and edges, where plain noise is round.
+            // The absolute value gives creases and edges; plain noise would be round.
             let fold = if bump.value < 0.0 { -seen } else { seen };
             for (slope, bump) in slope.iter_mut().zip(bump.slope) {
                 *slope += bump * rough * fold;
@@ -216,7 +216,7 @@ impl GroundCover {
         self.tint.at(height).map(|c| c * PAPER)
     }
 
-    /// The recipe's surfaces. Between samples their color varies like that of soil and rock.
+    /// The recipe's surfaces. Between samples their color varies as it does in soil and rock.
     fn covered(&self, site: &GroundPoint) -> (Light, f32) {
         let [red, green, blue, roughness] = self.between(&self.cover, site.x, site.y);
         let (small, fine) = (self.noise(site, 2.0 * self.cell, 2), self.noise(site, 0.5 * self.cell, 3));
@@ -254,7 +254,7 @@ impl GroundCover {
         let floor = step(0.10, 0.03, steep) * step(0.0, -400.0, over_trees) * (1.0 - 0.6 * wooded);
         color = mix(color, tone(FARMLAND, 0.5 + 0.5 * middle + 0.5 * small), 0.6 * floor);
 
-        // Too steep for soil, or too high.
+        // Bare where it is too steep for soil, or too high.
         let high =
             step(0.0, 700.0, site.height - 0.5 * (self.snow_line.min(1e6) + self.tree_line.min(1e6)) + 200.0 * middle);
         let bare = step(0.62, 0.92, steep + 0.20 * rough_edge - 0.10 * hollow + 0.34 * high);

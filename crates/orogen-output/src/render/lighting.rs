@@ -26,7 +26,7 @@ impl Lighting {
         Lighting::of(Sky::new(azimuth, elevation), rims)
     }
 
-    /// The same day with the sun at another azimuth, which takes almost no time.
+    /// The same day with the sun at another azimuth. This is much faster than [`Lighting::new`].
     #[must_use]
     pub fn turned(&self, azimuth: f64) -> Lighting {
         Lighting::of(self.sky.turned(azimuth), self.rims)

@@ -52,7 +52,7 @@ impl Tops {
 /// The water level of a patch without water.
 pub(super) const DRY: f32 = f32::NEG_INFINITY;
 
-/// Water shallower than this, in metres, is ignored: solvers leave such films by rounding.
+/// Water shallower than this, in metres, is ignored: rounding errors of solvers leave such films.
 const FILM: f32 = 1e-3;
 
 impl Relief {
@@ -255,7 +255,7 @@ impl Relief {
     }
 }
 
-/// The values of `of` for each patch between columns and rows of samples.
+/// Evaluates `of` for each patch between columns and rows of samples.
 fn of_patches([columns, rows]: [usize; 2], of: impl Fn(usize, usize) -> f32 + Sync) -> Vec<f32> {
     let mut patches = vec![0.0; (columns - 1) * (rows - 1)];
     parallel::for_each(patches.chunks_mut((columns - 1).max(1)).enumerate(), |(j, row)| {

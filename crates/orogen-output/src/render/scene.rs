@@ -141,10 +141,10 @@ impl Scene {
         Scene::prepared(land, style, None, progress)
     }
 
-    /// Prepares a scene, with the part of the work that `device` can do done by it.
+    /// Prepares a scene. `device` does the part of the work that it supports.
     ///
     /// # Errors
-    /// Those of [`Scene::new`].
+    /// The errors of [`Scene::new`].
     pub fn prepared(
         land: &Land,
         style: &Style,
@@ -231,7 +231,7 @@ impl Scene {
     }
 
     /// The distance, in metres, from which all of the scene is visible from each of these directions (azimuth and
-    /// elevation in degrees): for pictures that turn around it at a constant distance.
+    /// elevation in degrees): for a series of pictures around it at a constant distance.
     pub fn distance(&self, sides: impl Iterator<Item = [f64; 2]>, spec: &CameraSpec) -> f64 {
         Camera::distance(sides, spec, &self.relief, &self.frame())
     }
@@ -318,7 +318,7 @@ impl Scene {
             Around::Sea(z) => {
                 let sea = level(z, Seen::Land(Surface::Water));
                 match (self.relief.hit(ray, nearest).map(met), sea) {
-                    // The bed does not exist beyond the land's edge: below the sea surface the sea counts.
+                    // The ground below the sea is not drawn beyond the land's edge; the sea surface hides it.
                     (Some(hit), Some(sea)) if sea.distance < hit.distance && !self.inside(sea.place) => Some(sea),
                     (hit, sea) => hit.or(sea),
                 }

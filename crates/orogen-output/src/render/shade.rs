@@ -28,7 +28,7 @@ impl Scene {
         std::array::from_fn(|c| light[c] * left[c] + air[c] * (1.0 - left[c]))
     }
 
-    /// The light from an intersection; `mirrors` says whether water reflects.
+    /// The light from an intersection. With `mirrors`, water reflects.
     pub(super) fn shade(&self, met: &Met, pixel: f64, mirrors: bool) -> Light {
         match met.surface {
             Seen::Land(Surface::GroundCover) => self.shade_ground(met, pixel),
@@ -38,7 +38,7 @@ impl Scene {
         }
     }
 
-    /// Width of a pixel in metres at an intersection; `cosine` is that of the viewing angle.
+    /// Width of a pixel in metres at an intersection; `cosine` is the cosine of the viewing angle.
     fn footprint(&self, met: &Met, pixel: f64, cosine: f64) -> f32 {
         // The geometric mean of length and width.
         (met.distance * pixel * self.relief.cell() / cosine.clamp(0.04, 1.0).sqrt() * 0.7) as f32

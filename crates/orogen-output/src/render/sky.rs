@@ -43,8 +43,8 @@ pub(super) const UP: usize = 40;
 const STEPS: usize = 24;
 const SUN_STEPS: usize = 8;
 
-/// A clear sky with the sun at one position. Light is relative to that of the sun above the atmosphere on a surface
-/// that faces it.
+/// A clear sky with the sun at one position. Light is relative to the sunlight above the atmosphere on a surface that
+/// faces the sun.
 #[derive(Debug, Clone)]
 pub struct Sky {
     sun: Vector,
@@ -122,7 +122,7 @@ impl Sky {
         self.sunlight
     }
 
-    /// The light from a direction, without the sun; below the horizon, that of the horizon above it.
+    /// The light from a direction, without the sun; below the horizon, the light of the horizon above it.
     pub fn light(&self, along: Vector) -> Light {
         let up = along.z.max(0.0).sqrt() as f32 * (UP - 1) as f32;
         let level = (along.x * along.x + along.y * along.y).sqrt();
@@ -138,8 +138,7 @@ impl Sky {
         })
     }
 
-    /// The light from a direction for lighting the ground: less saturated, like that of real skies, which are rarely
-    /// quite clear.
+    /// The light from a direction for lighting the ground: less saturated, because real skies are rarely quite clear.
     pub(super) fn falling(&self, along: Vector) -> Light {
         let light = self.light(along);
         let grey = 0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2];
@@ -150,7 +149,7 @@ impl Sky {
     pub fn seen(&self, along: Vector) -> Light {
         let sky = self.light(along);
         let radius = SUN_RADIUS.to_radians();
-        // 1 - cos of the angle to the center of the sun, relative to that of its limb.
+        // 1 - cos of the angle to the center of the sun, relative to the value at its limb.
         let away = (1.0 - along.dot(self.sun)) / (0.5 * radius * radius);
         if away >= 1.5 || along.z < 0.0 {
             return sky;
@@ -163,8 +162,8 @@ impl Sky {
     }
 }
 
-/// Air masses from a height (metres from the Earth's center) to space in a direction: of molecules, of droplets, of
-/// ozone; none if the Earth is in the way.
+/// Air masses from a height (metres from the Earth's center) to space in a direction, for molecules, droplets and
+/// ozone; `None` if the Earth is in the way.
 fn depths(from: f32, up: f32) -> Option<[f32; 3]> {
     let grazing = from * (1.0 - up * up).max(0.0).sqrt();
     if up < 0.0 && grazing < EARTH {
@@ -206,9 +205,9 @@ fn dimmed(depth: Option<[f32; 3]>) -> Light {
     std::array::from_fn(|c| libm::expf(-(RAYLEIGH[c] * molecules + MIE_DIMS * droplets + OZONE[c] * ozone)))
 }
 
-/// The light from a direction that rises by `up`, with the sun at the sine of elevation `sun_up`; then the cosines of
-/// the angle to the sun and of that angle in the horizontal plane. `shed` is the light of sky and ground that is
-/// scattered again.
+/// The light from a direction that rises by `up`, with `sun_up`, the sine of the sun's elevation. `towards_sun` and
+/// `cosine` are the cosines of the angle to the sun and of its horizontal component. `shed` is the light of sky and
+/// ground that is scattered again.
 fn scattered(up: f32, sun_up: f32, [towards_sun, cosine]: [f32; 2], shed: Light) -> Light {
     use std::f32::consts::PI;
     let rayleigh = 3.0 / (16.0 * PI) * (1.0 + towards_sun * towards_sun);
@@ -256,8 +255,8 @@ pub(super) struct Haze {
 const BLOCK: f64 = 0.30;
 
 impl Haze {
-    /// Haze of this density over a block: 0 is none, 1 that of a clear day. Lengths are the diagonal of the block and
-    /// the height of its highest ground above the lowest.
+    /// Haze of this density over a block: 0 is none, 1 is a clear day. `across` is the diagonal of the block, and
+    /// `highest` is the height of its highest ground above the lowest.
     pub fn of_block(density: f64, across: f64, highest: f64) -> Haze {
         Haze::new(BLOCK * density, across, (1.2 * highest).max(0.02 * across))
     }

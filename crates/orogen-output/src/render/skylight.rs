@@ -1,10 +1,10 @@
 //! Light of the sky on each sample, with the horizon and the color of every direction.
 //!
-//! In each of sixteen directions the horizon of every sample is found exactly: lines through the land are
-//! traversed against the direction, with the convex hull of the ground passed (V. Timonen, J. Westerholm, "Scalable
-//! height field self-shadowing", 2010), in a few steps per sample for any distance. The light of the sky above that
-//! horizon on the sample's slope is read from a table of sums, so there is neither noise nor a radius that limits the
-//! shade of mountains.
+//! In each of sixteen directions the horizon of every sample is found exactly: lines through the land are traversed
+//! against the direction while the convex hull of the ground is updated (V. Timonen, J. Westerholm, "Scalable height
+//! field self-shadowing", 2010), in a few steps per sample for any distance. The light of the sky above that horizon on
+//! the sample's slope is read from a table of sums, so there is neither noise nor a radius that limits the shade of
+//! mountains.
 
 use orogen_grid::parallel;
 
@@ -19,7 +19,8 @@ use orogen_io::palette::color::Light;
 /// Number of directions.
 const AZIMUTHS: usize = 16;
 
-/// With more samples per side, light is computed for every second sample, every third, and so on.
+/// Maximum number of samples per side; on larger land, light is computed for every second sample, every third, and so
+/// on.
 const MOST: usize = 2048;
 
 /// Entries of the tables, over the sine of the horizon's elevation.
@@ -31,7 +32,7 @@ pub type Shed = [f32; 4];
 
 /// A device that computes the light of the sky, such as a graphics card.
 pub trait SkylightDevice {
-    /// Computes the light of the sky on every sample of the land; `None` if the processor must.
+    /// Computes the light of the sky on every sample of the land; `None` if the CPU must do it.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -48,7 +49,7 @@ pub(super) struct Skylight {
 }
 
 impl Skylight {
-    /// Computes the light, on `device` if it can.
+    /// Computes the light, on `device` if it supports that.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -85,15 +86,15 @@ impl Skylight {
     }
 }
 
-/// What the light is computed from, for the processor and other devices.
+/// The input of the computation, for the CPU and for other devices.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct SkylightInput {
     /// Number of columns and rows.
     pub size: [usize; 2],
-    /// The z of the ground, in cells of this size.
+    /// The z of the ground at every sample, in cells, row by row.
     pub bed: Vec<f32>,
-    /// The same column by column.
+    /// The same values, column by column.
     pub turned: Vec<f32>,
     /// The horizontal directions, of length 1, with the sky in each of them.
     pub directions: Vec<([f64; 2], Dome)>,
@@ -118,7 +119,7 @@ impl SkylightInput {
         SkylightInput { size: [columns, rows], bed, turned, directions: (0..AZIMUTHS).map(direction).collect(), stride }
     }
 
-    /// The light on every sample, computed by the processor.
+    /// The light on every sample, computed by the CPU.
     fn light(&self, progress: &Progress) -> Result<Vec<Shed>> {
         let [columns, rows] = self.size;
         let nothing = || vec![[0.0f32; 4]; self.bed.len()];
@@ -147,8 +148,8 @@ impl SkylightInput {
 /// The sky in one direction, summed from the zenith down: for level ground and for slopes that face it.
 #[derive(Debug)]
 pub struct Dome {
-    /// By the sine of the horizon's elevation: light times cos^2, then light times sin cos, each followed by that of a
-    /// uniform sky.
+    /// By the sine of the horizon's elevation: light times cos^2, then light times sin cos, each followed by the value
+    /// for a uniform sky.
     pub sums: Vec<[[f32; 4]; 2]>,
 }
 
@@ -202,7 +203,7 @@ struct Sweep<'a> {
     /// Number of columns, and of rows.
     length: usize,
     lines: usize,
-    /// The direction along the rows, and across them; the first component is the larger.
+    /// The direction along the rows and across them; the first component has the larger magnitude.
     towards: [f64; 2],
 }
 
@@ -231,7 +232,7 @@ impl Sweep<'_> {
         let last = (self.lines - 1) as f64;
         let forwards = self.towards[0] > 0.0;
         for k in 0..self.length {
-            // Ground ahead comes first.
+            // Ground ahead is visited first.
             let i = if forwards { self.length - 1 - k } else { k };
             let y = start as f64 + slant * i as f64;
             if y < -1.0 || y > last + 1.0 {
@@ -254,7 +255,7 @@ impl Sweep<'_> {
     fn gather(&self, dome: &Dome, shed: &mut [Shed]) {
         let (length, lines, slant) = (self.length, self.lines, self.slant());
         let drift = slant * (length - 1) as f64;
-        // The starting rows of lines such that each sample is between two of them.
+        // The starting rows of lines such that each sample lies between two lines.
         let first = (-drift.max(0.0)) as i64 - 1;
         let count = lines + drift.abs() as usize + 3;
         let mut horizons = vec![0.0f32; count * length];
@@ -314,7 +315,8 @@ mod tests {
         let wall = skylight(201, 101, |x, _| if x >= 100.0 { 1e4 } else { 0.0 });
         let foot = wall.at(98.0, 50.0)[3];
         assert!((foot - 0.5).abs() < 0.04, "{foot}");
-        // A plane that rises by its whole run sees (1 + cos 45) / 2, but for the directions along which it ends soon.
+        // A plane that rises at 45 degrees sees (1 + cos 45) / 2 of the sky, except in the directions in which it soon
+        // ends.
         let slope = skylight(401, 401, |x, _| x);
         let middle = slope.at(200.0, 200.0)[3];
         let expect = 0.5 * (1.0 + 0.5f32.sqrt());

@@ -160,7 +160,7 @@ fn still_water_mirrors_the_mountain_behind_it() {
     };
     let view = View::At { eye: [300.0, 585.0, 12.0], look: [300.0, 330.0] };
     let [with, without] = [240.0, 0.5].map(|top| paint(&land(&mountain(top), 0.0), &style, &view, 50.0));
-    // As far below the shore as the mountain is above it.
+    // As far below the shore as the mountain is above the shore.
     let shore = |bytes: &[u8], j: usize| (20..44).map(|i| brightness(pixel(bytes, i, j))).sum::<i32>() / 24;
     let (near, far) = (shore(&with, 24), shore(&without, 24));
     assert!((near - far).abs() > 25, "{near} {far}");

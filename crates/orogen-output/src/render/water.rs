@@ -14,9 +14,9 @@ pub(super) const DEEP: Light = [0.006, 0.024, 0.036];
 /// The albedo of the bottom.
 pub(super) const BOTTOM: Light = [0.20, 0.18, 0.125];
 
-/// The same for lakes: brown with humus and green with algae, with a Secchi depth of about 4 m (1.7 over the
+/// The absorption of lake water: brown with humus and green with algae, with a Secchi depth of about 4 m (1.7 over the
 /// coefficient of green: H. H. Poole and W. R. G. Atkins, "Photo-electric measurements of submarine illumination",
-/// 1929), over mud and dark stones.
+/// 1929), and the albedo of a bottom of mud and dark stones.
 pub(super) const LAKE_TAKES: Light = [0.85, 0.42, 0.65];
 pub(super) const LAKE_DEEP: Light = [0.009, 0.026, 0.030];
 pub(super) const LAKE_BOTTOM: Light = [0.060, 0.056, 0.040];
@@ -34,7 +34,7 @@ pub(super) const BENDS: f32 = 0.565;
 /// Wavelengths of waves in metres, the longest first, with their steepness.
 pub(super) const WAVES: [(f32, f32); 4] = [(46.0, 0.012), (19.0, 0.018), (7.0, 0.026), (2.6, 0.030)];
 
-/// Waves are shorter from north to south by this factor.
+/// Ratio of the wavelengths along x to those along y.
 pub(super) const STRETCH: f64 = 1.4;
 
 /// Kinds of water.

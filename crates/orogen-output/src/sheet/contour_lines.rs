@@ -85,8 +85,7 @@ impl ContourLines {
     }
 }
 
-/// The labels of contours with their inks: those of index contours first, and those of long lines before those of short
-/// ones.
+/// The labels of contours with their inks: index contours first, and long lines before short ones.
 fn labels(
     linework: &Linework,
     contours: &[(&Line, Vec<Point>)],
@@ -118,8 +117,8 @@ fn labels(
         labels.extend(found.into_iter().map(|label| (inks[nth], label)));
         is_placed
     };
-    // Labels of all contours would hide those around them on steep ground: first the places where no other line is
-    // near.
+    // On steep ground, labels of all contours would hide the lines around them, so positions without another line
+    // nearby are tried first.
     if of_all {
         let passing = Passing::of(map, contours.iter().map(|(_, places)| places.as_slice()));
         order.retain(|nth| !placed(*nth, &|place, reach| passing.is_alone(*nth, place, reach)));

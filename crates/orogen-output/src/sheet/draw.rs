@@ -23,15 +23,15 @@ use orogen_io::palette::tint::Tint;
 pub struct Sheet {
     /// The items on the page.
     pub scene: Scene,
-    /// Characters of its texts that no installed font has; they are omitted.
+    /// Characters of the texts that no installed font has; they are omitted.
     pub lacking: Vec<char>,
-    /// Names that have no room on the map; they are left out.
+    /// Names that have no room on the map; they are omitted.
     pub left_out: Vec<String>,
-    /// Names of rivers at points without a river nearby; they are left out.
+    /// Names of rivers at points without a river nearby; they are omitted.
     pub without_river: Vec<String>,
     /// Distance between contours, in metres, if there are contours at an interval.
     pub interval: Option<f64>,
-    /// The heights of its contours in metres, ascending.
+    /// The heights of the contours in metres, ascending.
     pub levels: Vec<f64>,
     /// Resolution in pixels per inch, for [`raster::draw`](super::raster::draw).
     pub dpi: f64,
@@ -174,7 +174,7 @@ enum Part {
     Legend,
 }
 
-/// The colors of a sheet's heights. Without a sea level, everything is land.
+/// The tint of a sheet's heights. Without a sea level, everything is land.
 fn tint(heights: &Grid, options: &SheetOptions) -> Tint {
     // With a given range, the colors must not depend on the window's own heights.
     let below_all = || options.range.map_or_else(|| Levels::of(heights).low() - 1.0, |_| f32::NEG_INFINITY);

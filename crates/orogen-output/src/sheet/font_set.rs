@@ -1,4 +1,4 @@
-//! Text as outlines: in the built-in font and, for characters that it lacks, in a font of the system.
+//! Text as outlines, in the built-in font; characters that it lacks come from a system font.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ use orogen_io::fs;
 /// The fonts of a sheet.
 pub struct FontSet {
     faces: [FontRef<'static>; 3],
-    /// A font of the system, for characters that the built-in one lacks.
+    /// A system font for characters that the built-in font lacks.
     other: Option<FontVec>,
     /// Characters that no font has.
     lacking: Vec<char>,
@@ -38,7 +38,8 @@ const MAX_FONTS: usize = 2000;
 const MAX_BYTES: u64 = 128 << 20;
 
 impl FontSet {
-    /// The fonts for `texts`. If the built-in font lacks characters, the first system font with most of them is added.
+    /// The fonts for `texts`. If the built-in font lacks characters, the first system font that has the most of them is
+    /// added.
     ///
     /// # Errors
     /// If the built-in font cannot be read.
@@ -78,7 +79,8 @@ impl FontSet {
         self.set(text, face, size, |_, _, _| {})
     }
 
-    /// The outlines of a line of text from `at`, along a baseline that rises by `angle` radians (counter-clockwise).
+    /// The outlines of a line of text that starts at `at`, along a baseline that rises by `angle` radians
+    /// (counter-clockwise).
     #[must_use]
     pub fn write(&self, text: &str, face: Face, size: f32, at: Point, angle: f32) -> Vec<Step> {
         let on_page = Affine::turning(at, angle);
@@ -178,7 +180,7 @@ fn outline(font: &dyn Glyphs, id: GlyphId, size: f32, place: impl Fn(Point) -> P
     }
 }
 
-/// The system font with the most of these characters; of equals the first by path.
+/// The system font with the most of these characters; of equal ones the first by path.
 fn search(lacking: &[char]) -> Option<FontVec> {
     let own = std::env::var_os("HOME").map(PathBuf::from);
     let own = own.iter().flat_map(|home| OWN_FOLDERS.map(|folder| home.join(folder)));
@@ -212,7 +214,7 @@ fn gather(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// A font file; of a collection, its first font.
+/// Reads a font file; of a collection, its first font.
 fn read(path: &Path) -> Option<FontVec> {
     let length = fs::metadata(path).ok()?.len();
     if length > MAX_BYTES {

@@ -17,7 +17,7 @@ use orogen_io::palette::tint::Tint;
 pub const SMALL: f32 = 2.7;
 const HEADING: f32 = 7.0;
 
-/// A scene with fonts for drawing text.
+/// A scene and fonts for drawing text on it.
 pub struct Desk<'a> {
     /// The page.
     pub scene: Scene,

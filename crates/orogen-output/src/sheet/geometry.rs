@@ -16,26 +16,26 @@ impl Point {
         Point { x, y }
     }
 
-    /// The point this much further to the right and down.
+    /// The point moved to the right and down by these distances.
     #[must_use]
     pub fn moved(self, right: f32, down: f32) -> Point {
         Point::new(self.x + right, self.y + down)
     }
 
-    /// Both distances times a factor.
+    /// Multiplies both distances by a factor.
     #[must_use]
     pub fn scaled(self, by: f32) -> Point {
         Point::new(self.x * by, self.y * by)
     }
 
-    /// The point at this share of the way to another one: 0 is this one, 1 the other.
+    /// The point at this share of the way to another point: 0 is this point, 1 the other.
     #[must_use]
     pub fn toward(self, other: Point, share: f32) -> Point {
         let way = self.to(other);
         Point::new(self.x + way.x * share, self.y + way.y * share)
     }
 
-    /// The way to another point.
+    /// The vector to another point.
     #[must_use]
     pub fn to(self, other: Point) -> Vector {
         Vector { x: other.x - self.x, y: other.y - self.y }
@@ -60,7 +60,7 @@ impl From<[f32; 2]> for Point {
     }
 }
 
-/// A way from one point to another, in millimetres to the right and down.
+/// A vector in millimetres, to the right and down.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Vector {
     /// To the right.
@@ -70,19 +70,19 @@ pub struct Vector {
 }
 
 impl Vector {
-    /// The square of its length.
+    /// The square of the length.
     #[must_use]
     pub fn square(self) -> f32 {
         self.x * self.x + self.y * self.y
     }
 
-    /// Its length.
+    /// The length.
     #[must_use]
     pub fn length(self) -> f32 {
         self.square().sqrt()
     }
 
-    /// Its direction in radians clockwise from the right, as y points down.
+    /// The direction in radians clockwise from the right, because y points down.
     #[must_use]
     pub fn direction(self) -> f32 {
         libm::atan2f(self.y, self.x)
@@ -105,13 +105,13 @@ impl Size {
         Size { width, height }
     }
 
-    /// Both sides as `change` makes them.
+    /// Applies `change` to both sides.
     #[must_use]
     pub fn map(self, change: impl Fn(f32) -> f32) -> Size {
         Size::new(change(self.width), change(self.height))
     }
 
-    /// Number of pixels of `dpi` to an inch along both sides, at least 1.
+    /// Number of pixels along both sides at `dpi` pixels per inch, at least 1.
     #[must_use]
     pub fn pixels(self, dpi: f64) -> [usize; 2] {
         [self.width, self.height].map(|side| ((f64::from(side) * dpi / 25.4).round() as usize).max(1))
@@ -121,13 +121,13 @@ impl Size {
 /// A rectangle with horizontal and vertical sides.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Rect {
-    /// Its left side.
+    /// The left side.
     pub left: f32,
-    /// Its upper side.
+    /// The upper side.
     pub top: f32,
-    /// Its width.
+    /// The width.
     pub width: f32,
-    /// Its height.
+    /// The height.
     pub height: f32,
 }
 
@@ -138,50 +138,50 @@ impl Rect {
         Rect { left, top, width, height }
     }
 
-    /// Its upper left corner.
+    /// The upper left corner.
     #[must_use]
     pub fn corner(self) -> Point {
         Point::new(self.left, self.top)
     }
 
-    /// Its width and height.
+    /// The width and height.
     #[must_use]
     pub fn size(self) -> Size {
         Size::new(self.width, self.height)
     }
 
-    /// Its right side.
+    /// The right side.
     #[must_use]
     pub fn right(self) -> f32 {
         self.left + self.width
     }
 
-    /// Its lower side.
+    /// The lower side.
     #[must_use]
     pub fn bottom(self) -> f32 {
         self.top + self.height
     }
 
-    /// Its corners, clockwise from the upper left one.
+    /// The corners, clockwise from the upper left one.
     #[must_use]
     pub fn corners(self) -> [Point; 4] {
         let (right, bottom) = (self.right(), self.bottom());
         [[self.left, self.top], [right, self.top], [right, bottom], [self.left, bottom]].map(Point::from)
     }
 
-    /// The point at these shares of its width and height.
+    /// The point at these shares of the width and height.
     #[must_use]
     pub fn at(self, across: f32, down: f32) -> Point {
         Point::new(self.left + self.width * across, self.top + self.height * down)
     }
 
-    /// The rectangle with all sides moved inwards.
+    /// The rectangle with all sides moved inwards by a distance.
     #[must_use]
     pub fn inset(self, by: f32) -> Rect {
         Rect::new(self.left + by, self.top + by, self.width - 2.0 * by, self.height - 2.0 * by)
     }
 
-    /// Position and size times a factor.
+    /// Multiplies position and size by a factor.
     #[must_use]
     pub fn scaled(self, by: f32) -> Rect {
         Rect::new(self.left * by, self.top * by, self.width * by, self.height * by)
@@ -191,23 +191,22 @@ impl Rect {
 /// An affine map of points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Affine {
-    /// Where it maps (0, 0).
+    /// The image of (0, 0).
     pub origin: Point,
-    /// The way that a step to the right becomes.
+    /// The image of a step of 1 to the right.
     pub right: Vector,
-    /// The way that a step down becomes.
+    /// The image of a step of 1 down.
     pub down: Vector,
 }
 
 impl Affine {
-    /// Moves (0, 0) to `origin`, with these factors to the right and down.
+    /// Scales by these factors to the right and down, then moves (0, 0) to `origin`.
     #[must_use]
     pub const fn scaling(origin: Point, across: f32, down: f32) -> Affine {
         Affine { origin, right: Vector { x: across, y: 0.0 }, down: Vector { x: 0.0, y: down } }
     }
 
-    /// Moves (0, 0) to `origin` and turns by `angle` radians counter-clockwise. The points have y up, as those of
-    /// fonts.
+    /// Rotates by `angle` radians counter-clockwise and moves (0, 0) to `origin`. Input points have y up, as in fonts.
     #[must_use]
     pub fn turning(origin: Point, angle: f32) -> Affine {
         let (sin, cos) = libm::sincosf(angle);

@@ -8,7 +8,7 @@ use super::ticks::{Count, step, step_words, ticks_every};
 use crate::map::text::Face;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-/// Minimum distance between lines, in millimetres: of a grid that suits the scale, and of any.
+/// Minimum distance between lines, in millimetres: of an automatic grid, and of a given grid.
 const SUITABLE: f64 = 20.0;
 const LEAST: f64 = 1.0;
 
@@ -54,7 +54,7 @@ impl GridLines {
         }
     }
 
-    /// A description for the legend.
+    /// A description of the grid for the legend.
     pub fn words(&self) -> String {
         format!("Grid, {} apart", step_words(self.step, self.counts[0]))
     }

@@ -18,7 +18,7 @@ pub fn laid(heights: &Grid, size: [usize; 2]) -> Grid {
     read(heights, &at(size[0], window.width), &at(size[1], window.height))
 }
 
-/// The same at the centers of `size` pixels that cover that extent.
+/// Resamples to the centers of `size` pixels that cover the same extent.
 pub fn at_pixels(heights: &Grid, size: [usize; 2]) -> Grid {
     let window = heights.window();
     let at = |count: usize, samples: usize| {

@@ -21,7 +21,7 @@ const SHORE: Rgb = [40, 96, 152];
 /// Relative luminance of the ground below which inks are bright.
 const DARK: f32 = 0.14;
 
-/// Widths of contours and of index contours, in millimetres.
+/// Width of ordinary contours, in millimetres.
 pub const THIN: f32 = 0.12;
 /// Width of index contours, in millimetres.
 pub const THICK: f32 = 0.24;
@@ -41,8 +41,8 @@ pub struct Inks {
 }
 
 impl Inks {
-    /// Inks visible on a color: dark ones, or bright ones on dark ground. Inks that were chosen are the same on any
-    /// ground.
+    /// Inks that are visible on a color: dark inks, or bright ones on dark ground. Inks that the user chose do not
+    /// depend on the ground.
     pub fn over([red, green, blue]: Light, is_land: bool, colors: &PageColors) -> Inks {
         let chosen = if is_land { colors.contours } else { colors.water };
         if let Some(line) = chosen {
@@ -93,7 +93,7 @@ impl PageColors {
     }
 }
 
-/// Share of the page in the color of lakes, if a color of water was chosen.
+/// Share of the page color in the color of lakes, if a color of water was chosen.
 const LIGHT: f32 = 0.6;
 
 /// A color between two others.

@@ -10,7 +10,7 @@ pub struct Label {
     pub text: String,
     /// Height of the letters, in millimetres.
     pub size: f32,
-    /// Factor of the distances between letters.
+    /// Factor of the distance between letters.
     pub spacing: f32,
     /// Points along its center line, at most a letter's width apart, in reading order.
     pub path: Vec<Point>,
@@ -39,13 +39,13 @@ impl Label {
 pub struct LabelStyle {
     /// Height of the letters, in millimetres.
     pub size: f32,
-    /// Factor of the distances between letters.
+    /// Factor of the distance between letters.
     pub spacing: f32,
-    /// Room on both sides of the middle of the letters, in heights of letters.
+    /// Room on both sides of the center line of the letters, relative to their height.
     pub reach: f32,
     /// Maximum angle between two quarters of a text, in radians.
     pub turn: f32,
-    /// Minimum distance between the ends of a text, in lengths of it.
+    /// Minimum distance between the ends of a text, relative to its length.
     pub straight: f32,
     /// Minimum distance between two labels, in millimetres.
     pub apart: f32,
@@ -54,10 +54,11 @@ pub struct LabelStyle {
 }
 
 /// Finds positions for a line's labels. `line` has higher ground to its left, so a text along it points uphill. Where
-/// such a text would be upside down it is reversed, if there is no better position. `width` includes the distances
+/// such a text would be upside down it is reversed, if there is no better position. `width` includes the spacing
 /// between letters.
 ///
-/// A label lies where `is_clear` holds for all points of its path. The area of the labels is marked as occupied.
+/// A label is placed where `is_clear` returns true for all points of its path. The area of the labels is marked as
+/// occupied.
 pub fn place(
     line: &[Point],
     text: &str,
@@ -133,7 +134,7 @@ impl<'a> Along<'a> {
 
     fn part(&self, from: f32, to: f32, step: f32) -> Vec<Point> {
         let count = ((to - from) / step).ceil().max(1.0) as usize;
-        // Bends shorter than a letter would rotate letters against each other.
+        // Bends shorter than a letter would rotate neighboring letters by different angles.
         let places: Vec<Point> = (0..=count).map(|k| self.at(from + (to - from) * k as f32 / count as f32)).collect();
         let reach = (count / 6).max(1);
         (0..=count)
@@ -145,8 +146,8 @@ impl<'a> Along<'a> {
             .collect()
     }
 
-    /// The cost of a position for a text, from 0: for bends, and for upside-down text; `None` if it bends too much to
-    /// be legible.
+    /// The cost of a position for a text, from 0: for bends and for upside-down text; `None` if it bends too much to be
+    /// legible.
     fn score(&self, start: f32, need: f32, style: LabelStyle) -> Option<f32> {
         let places = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| self.at(start + need * share));
         let way = places[0].to(places[4]);
@@ -171,7 +172,7 @@ pub fn gaps(lines: &[Vec<Point>], labels: &[&Label], margin: f32) -> Vec<Vec<Poi
     if labels.is_empty() {
         return lines.to_vec();
     }
-    // Labels indexed by squares, so that each point tests only a few.
+    // Labels are indexed by squares, so that each point is tested against only a few.
     let near = 12.0f32;
     let key = |place: Point| ((place.x / near).floor() as i32, (place.y / near).floor() as i32);
     let mut known: std::collections::BTreeMap<(i32, i32), Vec<(Point, f32)>> = std::collections::BTreeMap::new();

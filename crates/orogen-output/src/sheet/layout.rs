@@ -9,17 +9,17 @@ pub const MARGIN: f32 = 9.0;
 const HEADING: f32 = 17.5;
 /// Room for coordinates at the left, the right, the top and the bottom.
 const AXES: [f32; 4] = [12.5, 5.0, 1.0, 6.0];
-/// The same with the numbers of a grid on all sides.
+/// Room for coordinates with the numbers of a grid on all sides.
 const GRID: [f32; 4] = [12.5, 12.5, 5.2, 6.0];
-/// Distance between the map and the blocks below or beside it.
+/// Distance between the map and the blocks below it or at its side.
 const FOOT_GAP: f32 = 5.0;
 /// The height of a row of blocks.
 pub const ROW: f32 = 12.5;
 /// Distance between two blocks of a column.
 const COLUMN_GAP: f32 = 3.5;
-/// Minimum width of a column of blocks beside a map, and its maximum width beside a narrow map.
+/// Minimum width of a column of blocks at the side of a map, and its maximum width for a narrow map.
 const COLUMN: [f32; 2] = [64.0, 88.0];
-/// Minimum width and height of a profile, and its maximum ratio of height to width, below a map and beside it.
+/// Minimum width and height of a profile, and its maximum ratio of height to width, below a map and at its side.
 const PROFILE: [f32; 2] = [58.0, 30.0];
 const PROFILE_ASPECT: [f32; 2] = [0.45, 0.60];
 /// Distance between two blocks of a row.
@@ -27,10 +27,10 @@ pub const BLOCK_GAP: f32 = 9.0;
 /// Minimum width of a page that is fitted to a map.
 const NARROWEST: f32 = 118.0;
 
-/// A block below or beside the map.
+/// A block below the map or at its side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Block {
-    /// Its width in a row, and in a column where its height is flexible.
+    /// Its width in a row, and in a column, where its height is flexible.
     pub widths: [f32; 2],
     /// Its height in a column.
     pub height: f32,
@@ -62,7 +62,7 @@ struct Draft {
 
 impl Layout {
     /// Lays out a map with this ratio of width to height. Blocks are in rows below it or, if that makes the map larger,
-    /// in a column beside it. Remaining space on paper is used for profiles of the land.
+    /// in a column at its side. Remaining space on paper is used for profiles of the land.
     ///
     /// The map's sides are on whole pixels, so that its picture needs no resampling.
     pub fn new(aspect: f64, blocks: &[Block], options: &SheetOptions) -> Layout {
@@ -97,7 +97,7 @@ impl Layout {
                 let aside = within(Size { width: room.width - column - FOOT_GAP, ..room });
                 let stacked = stack(blocks) <= page.height - 2.0 * MARGIN - head;
                 let is_aside = !blocks.is_empty() && stacked && aside.width > below.width;
-                // The space beside the map, at most the width of the map with its coordinates.
+                // The space at the side of the map, at most as wide as the map with its coordinates.
                 let widest = column.max(COLUMN[1]).max(aside.width + left + right);
                 let column = column.max(room.width - FOOT_GAP - aside.width).min(widest);
                 let draft = match is_aside {
@@ -139,7 +139,7 @@ impl Layout {
                     Some(_) => vec![fits(Rect::new(x, y + FOOT_GAP, column, half)); 2],
                     None => vec![fits(Rect::new(x, y + FOOT_GAP, column, free))],
                 };
-                // The foot of the last profile is aligned with the map's.
+                // The lower edge of the last profile is aligned with that of the map.
                 let mut foot = under;
                 for area in areas.into_iter().flatten() {
                     foot -= area.height;

@@ -1,4 +1,4 @@
-//! Contours of a sheet: their interval, and which are worth drawing.
+//! Contours of a sheet: choice of the interval, and removal of lines that are too short.
 
 use orogen_grid::contour::chaikin::chaikin;
 use orogen_grid::contour::levels::{is_index, levels_every};
@@ -17,7 +17,7 @@ const MOST: f64 = 60.0;
 /// Minimum length of rings, in millimetres.
 const SHORTEST: f64 = 3.0;
 
-/// Round intervals, as on published maps.
+/// Round intervals of published maps.
 const ROUND: [f64; 5] = [1.0, 2.0, 2.5, 5.0, 10.0];
 
 /// A contour interval for a map on which a sample is `sample` millimetres wide, in metres.
@@ -50,8 +50,8 @@ pub fn interval(heights: &Grid, sea_level: Option<f64>, sample: f64) -> f64 {
     rounds.map(|n| n * power).find(|step| *step >= wanted * 0.95).unwrap_or(10.0 * power)
 }
 
-/// The contours of heights with samples of `sample` millimetres: smoothed, without the sea level and without short
-/// rings.
+/// The contours of heights with samples of `sample` millimetres: smoothed, without a contour at sea level and without
+/// short rings.
 ///
 /// # Errors
 /// If there are too many levels for the relief.
@@ -63,7 +63,7 @@ pub fn lines(heights: &Grid, interval: f64, sea_level: Option<f64>, sample: f64)
     lines_at(heights, &levels, sample)
 }
 
-/// The contours at these levels, in ascending order, likewise.
+/// The contours at these levels, in ascending order, smoothed and without short rings.
 ///
 /// # Errors
 /// If there are too many lines.
@@ -98,10 +98,10 @@ pub struct Summit {
     pub height: f32,
 }
 
-/// The highest samples within `apart` blocks of `block` x `block` samples, the highest first: at most `most`, none at
-/// the border, and all of them above their surroundings.
+/// Finds summits: the highest samples within `apart` blocks of `block` x `block` samples, the highest first. Returns at
+/// most `most`. Samples at the border and samples that are not above their surroundings are excluded.
 ///
-/// The height of a block is that of its highest sample, so that each summit is the highest sample nearby.
+/// The height of a block is the height of its highest sample, so that each summit is the highest sample nearby.
 pub fn summits(heights: &Grid, sea_level: Option<f64>, block: usize, apart: usize, most: usize) -> Vec<Summit> {
     let sea = sea_level.unwrap_or(f64::NEG_INFINITY) as f32;
     let blocks = blocks(heights, block.max(1));
@@ -111,7 +111,7 @@ pub fn summits(heights: &Grid, sea_level: Option<f64>, block: usize, apart: usiz
         for i in 2..width.saturating_sub(2) {
             let Some(summit) = blocks[(i, j)] else { continue };
             let here = summit.height;
-            // The nearest first, which rejects almost all. Missing samples are ignored.
+            // The nearest blocks are tested first, which rejects almost all candidates. Missing samples are ignored.
             let top = |reach: usize| {
                 let rows = j.saturating_sub(reach)..(j + reach + 1).min(height);
                 rows.into_iter().all(|y| {
@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn a_summit_is_the_highest_sample_however_coarse_the_map() {
         let mut grid = hills(1000.0);
-        // A spire of one sample, higher than any mean over its surroundings.
+        // A spire of one sample, higher than any mean of its surroundings.
         grid.row_mut(83)[63] = 1234.5;
         for block in [1, 2, 3, 7, 10] {
             let found = summits(&grid, None, block, 40 / block, 5);
@@ -214,7 +214,7 @@ mod tests {
         let grid = hills(1000.0);
         let all = lines(&grid, 100.0, Some(200.0), 0.25).unwrap();
         assert!(all.iter().all(|line| line.elevation != 200.0) && all.iter().any(|line| line.elevation == 300.0));
-        // A level that was asked for is drawn, also at sea level.
+        // A given level is drawn, also at sea level.
         let given = lines_at(&grid, &[200.0, 450.0], 0.25).unwrap();
         let heights: Vec<f64> = given.iter().map(|line| line.elevation).collect();
         assert_eq!((heights.first(), heights.last()), (Some(&200.0), Some(&450.0)));

@@ -20,16 +20,16 @@ use orogen_io::format::levels::Levels;
 const SAMPLE: f64 = 0.25;
 const MOST: usize = 2400;
 
-/// Minimum area that drains to the start of a river in m^2: gullies that a large scale shows are no rivers.
+/// Minimum drainage area at the start of a river in m^2: gullies at a large scale are not rivers.
 const SMALLEST: f64 = 1e5;
 
-/// Thresholds: area that drains to the start of a river and minimum area of a lake, in square millimetres; minimum
-/// depth of a lake, as a share of the relief.
+/// Thresholds: drainage area at the start of a river and minimum area of a lake, in square millimetres of the map;
+/// minimum depth of a lake, as a share of the relief.
 const SPRING: f64 = 42.0;
 const LAKE: f64 = 2.0;
 const DEPTH: f64 = 0.006;
 
-/// Ratio of cells below which heights count as enlarged: they are smooth between the original samples.
+/// Ratio of cells below which heights count as enlarged: smooth between the original samples.
 const ENLARGED: f64 = 0.6;
 
 /// Minimum distance between summits in millimetres, and maximum number of summits.
@@ -120,7 +120,7 @@ impl Linework {
         let levels = options.levels.as_ref().filter(|_| parts.contours);
         let interval = (parts.contours && levels.is_none())
             .then(|| options.interval.unwrap_or_else(|| interval(&grid, options.sea_level, sample)));
-        // Contours end at lakes that are drawn, and continue under those that are not.
+        // Contours end at lakes that are drawn, and continue under lakes that are not.
         let ground = Grid::from_data(*grid.window(), water.surface.data().to_vec()).filter(|_| parts.lakes);
         let ground = ground.as_ref().unwrap_or(&grid);
         let contours = match (interval, levels) {
@@ -133,7 +133,7 @@ impl Linework {
             _ => Vec::new(),
         };
         let summits = match options.parts.summits {
-            // Summits are found in the original heights: resampling moves them.
+            // Summits are found in the original heights, because resampling moves them.
             true => {
                 let block = (window.width - 1).div_ceil((size[0] - 1).max(1));
                 let block_width = sample * block as f64 * (size[0] - 1) as f64 / sides[0];
@@ -161,7 +161,7 @@ impl Linework {
         }
     }
 
-    /// The heights of its contours, ascending.
+    /// The heights of the contours, ascending.
     pub(super) fn levels(&self) -> Vec<f64> {
         let mut levels: Vec<f64> = self.contours.iter().map(|line| line.elevation).collect();
         levels.sort_by(f64::total_cmp);
@@ -169,7 +169,7 @@ impl Linework {
         levels
     }
 
-    /// The legend entries of its lines.
+    /// The legend entries of the lines.
     #[must_use]
     pub fn legend(&self, options: &SheetOptions) -> Vec<Entry> {
         let mut entries = Vec::new();
@@ -202,7 +202,7 @@ impl Linework {
     }
 }
 
-/// A height as it stands in labels, without its unit.
+/// A height as written in labels, without its unit.
 pub(super) fn height(value: f64) -> String {
     grouped(value, if value.fract() == 0.0 { 0 } else { 1 })
 }

@@ -176,7 +176,7 @@ mod tests {
             let has_room = place_name(desk, taken, Point::new(x, y), "Port Varn");
             (has_room, desk.scene.items.len())
         };
-        // To the right; at the right edge to the left; beside the first one above or below it.
+        // To the right; at the right edge to the left; next to the first one above or below it.
         assert_eq!(name(&mut desk, &mut taken, 20.0, 30.0), (true, 3));
         assert_eq!(name(&mut desk, &mut taken, 58.0, 10.0), (true, 6));
         assert_eq!(name(&mut desk, &mut taken, 20.5, 30.5), (true, 9));

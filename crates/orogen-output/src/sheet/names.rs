@@ -19,17 +19,19 @@ const ALONG: LabelStyle =
 /// Distances from the edge of a river to the middle of its name, in millimetres, the preferred one first.
 const BESIDE: [f32; 2] = [1.9, 2.6];
 
-/// Width of rivers that names of others do not cross, in millimetres.
+/// Width from which other names do not cross a river, in millimetres.
 const WIDE: f32 = 0.4;
 
-/// Maximum distance of a named point from its river, and from a summit that is found in the heights, in millimetres.
+/// Maximum distance of a named point from its river or from a summit found in the heights, in millimetres.
 const RIVER: f32 = 8.0;
 const SUMMIT: f32 = 3.0;
 
-/// Distances along a river from its named point in which there may be a name, in millimetres, the preferred one first.
+/// Lengths of the river around its named point in which its name may be placed, in millimetres, the preferred one
+/// first.
 const NEAR: [f32; 2] = [35.0, 90.0];
 
-/// Distance of points along the middle of a name, and half of the length that is smoothed, in millimetres.
+/// Distance between points along the middle of a name, and half of the length over which it is smoothed, in
+/// millimetres.
 const STEP: f32 = 0.5;
 const SMOOTHED: f32 = 4.0;
 
@@ -43,7 +45,7 @@ pub struct LeftOut {
 }
 
 impl Linework {
-    /// Draws the names of places, summits and lakes. Returns the summits of the heights that are named now.
+    /// Draws the names of places, summits and lakes. Returns the summits found in the heights that got a name.
     pub(super) fn draw_names(
         &self,
         desk: &mut Desk,
@@ -80,7 +82,7 @@ impl Linework {
         map.at(share(summit.x, self.samples[0]), share(summit.y, self.samples[1]))
     }
 
-    /// The height of a named summit: as given, that of the summit found there, or that of the ground.
+    /// The height of a named summit: the given one, that of the summit found there, or that of the ground.
     fn height(&self, place: &PlaceName, found: Option<&Summit>) -> Option<f64> {
         let ground = || {
             let nearest = |share: f64, count: usize| ((share * (count - 1) as f64).round() as usize).min(count - 1);
@@ -92,7 +94,8 @@ impl Linework {
             .or_else(|| Some(ground()).filter(|h| h.is_finite()))
     }
 
-    /// Draws the names along lines, and those of rivers at points. `rivers` are the drawn stretches with their widths.
+    /// Draws the names along lines, and the names of rivers at points. `rivers` are the drawn stretches with their
+    /// widths.
     pub(super) fn draw_line_names(
         &self,
         desk: &mut Desk,
@@ -135,14 +138,14 @@ fn on_map(map: Rect, at: [f64; 2]) -> Point {
 
 /// The room for names along lines.
 pub struct Room<'a> {
-    /// Without names and wide rivers.
+    /// Areas without names and wide rivers.
     pub names: Taken,
-    /// Without anything else.
+    /// Areas without anything else.
     pub all: &'a mut Taken,
 }
 
-/// Draws a name beside a line of this width, if there is room on one of its sides: first where nothing else is, then
-/// across lines.
+/// Draws a name along one side of a line of this width, if there is room: first in empty areas, then across other
+/// lines.
 fn name_along(desk: &mut Desk, room: &mut Room, line: &[Point], width: f32, name: &str, ink: Rgb) -> bool {
     let even = smoothed(line);
     let wide = desk.letters.width(name, Face::Italic, ALONG.size) * ALONG.spacing;
@@ -169,7 +172,7 @@ fn name_along(desk: &mut Desk, room: &mut Room, line: &[Point], width: f32, name
 
 /// The room around a line, without the line.
 fn around(line: &[Point], reach: f32) -> Taken {
-    /// More than the reach of any text beside the line.
+    /// More than the height of any text along the line.
     const FREE: f32 = 12.0;
     let corner = line.iter().fold(Point::new(f32::MAX, f32::MAX), |a, b| Point::new(a.x.min(b.x), a.y.min(b.y)));
     let far = line.iter().fold(corner, |a, b| Point::new(a.x.max(b.x), a.y.max(b.y)));
@@ -184,7 +187,7 @@ fn longest_within(line: &[Point], area: Rect) -> Vec<Point> {
     let mut parts: Vec<Vec<Point>> = vec![Vec::new()];
     for pair in line.windows(2) {
         let way = pair[0].to(pair[1]);
-        // Shares of the way between which it is inside (Liang and Barsky 1984).
+        // Shares of the segment between which it is inside (Liang and Barsky 1984).
         let mut inside = [0.0f32, 1.0];
         for (at, way, ends) in
             [(pair[0].x, way.x, [area.left, area.right()]), (pair[0].y, way.y, [area.top, area.bottom()])]
@@ -228,7 +231,7 @@ fn smoothed(line: &[Point]) -> Vec<Point> {
     let reach = (SMOOTHED / STEP) as usize;
     (0..even.len())
         .map(|k| {
-            // Symmetric, so that the ends stay.
+            // Symmetric, so that the ends do not move.
             let reach = reach.min(k).min(even.len() - 1 - k);
             let near = &even[k - reach..=k + reach];
             let mean = |side: fn(&Point) -> f32| near.iter().map(side).sum::<f32>() / near.len() as f32;
@@ -237,7 +240,7 @@ fn smoothed(line: &[Point]) -> Vec<Point> {
         .collect()
 }
 
-/// A line moved to its right on the page by a distance, or to its left by a negative one.
+/// A line moved by a distance to its right on the page, or to its left if the distance is negative.
 fn moved(line: &[Point], by: f32) -> Vec<Point> {
     let last = line.len().saturating_sub(1);
     let aside = |k: usize| {
@@ -248,8 +251,8 @@ fn moved(line: &[Point], by: f32) -> Vec<Point> {
     if line.len() < 2 { Vec::new() } else { (0..line.len()).map(aside).collect() }
 }
 
-/// The course of the river nearest to a point, downstream, and its largest width: the stretch there with those that it
-/// flows into, and the widest of those that flow into it.
+/// The course of the river nearest to a point, downstream, and its largest width; `None` if no river is near. It consists
+/// of the nearest stretch, the stretches downstream of it, and upstream the widest stretch at each confluence.
 fn course(rivers: &[(f32, Vec<Point>)], at: Point) -> Option<(f32, Vec<Point>)> {
     /// Maximum distance between the ends of stretches, in millimetres.
     const JOINED: f32 = 0.6;
@@ -291,7 +294,7 @@ fn distance_to(line: &[Point], at: Point) -> f32 {
     line.windows(2).map(distance).fold(f32::MAX, f32::min)
 }
 
-/// The part of a line within a distance along it from the point of it that is nearest to a place.
+/// The part of a line within a distance along the line from its point nearest to a place.
 fn part_near(line: &[Point], at: Point, reach: f32) -> Vec<Point> {
     let Some(nearest) = (0..line.len()).min_by(|a, b| line[*a].distance(at).total_cmp(&line[*b].distance(at))) else {
         return Vec::new();
@@ -326,7 +329,7 @@ mod tests {
         ];
         let (width, points) = course(&rivers, Point::new(12.0, 11.0)).unwrap();
         assert_eq!((width, points[0], points[points.len() - 1]), (0.9, Point::new(20.0, 0.0), Point::new(10.0, 40.0)));
-        // A tributary flows on in its river.
+        // The course of a tributary continues in the river that it joins.
         let (_, points) = course(&rivers, Point::new(0.0, 1.0)).unwrap();
         assert_eq!((points[0], points[points.len() - 1]), (Point::new(0.0, 0.0), Point::new(10.0, 40.0)));
         assert_eq!(course(&rivers, Point::new(60.0, 20.0)), None);
@@ -337,7 +340,7 @@ mod tests {
         let area = Rect::new(0.0, 0.0, 100.0, 50.0);
         let cut = |points: &[[f32; 2]]| longest_within(&line(points.iter().copied()), area);
         assert_eq!(cut(&[[-10.0, 20.0], [110.0, 20.0]]), line([[0.0, 20.0], [100.0, 20.0]]));
-        // Twice inside: the longer part.
+        // Inside twice: the longer part is taken.
         let twice = [[10.0, 10.0], [10.0, 90.0], [60.0, 90.0], [60.0, 5.0], [40.0, 5.0]];
         assert_eq!(cut(&twice), line([[60.0, 50.0], [60.0, 5.0], [40.0, 5.0]]));
         assert!(cut(&[[-10.0, 60.0], [110.0, 60.0]]).is_empty() && cut(&[[5.0, 5.0]]).is_empty());

@@ -103,14 +103,14 @@ pub enum Labels {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PageColors {
-    /// The page; white by default.
+    /// Color of the page; white by default.
     pub page: Rgb,
-    /// Texts, frames and symbols; almost black by default.
+    /// Color of texts, frames and symbols; almost black by default.
     pub ink: Rgb,
-    /// Rivers, shores, lakes and contours under water; shades of blue by default. The sea has the colors of the
-    /// palette.
+    /// Color of rivers, shores, lakes and contours under water; shades of blue by default. The sea has the colors of
+    /// the palette.
     pub water: Option<Rgb>,
-    /// Contours on land, on any ground; by default brown, and bright on dark ground.
+    /// Color of contours on land, whatever the ground; by default brown, and bright on dark ground.
     pub contours: Option<Rgb>,
 }
 
@@ -163,34 +163,34 @@ impl Layer {
         Layer { values, name: name.into(), unit: "", scale: Scale::Linear, range: None }
     }
 
-    /// The same in this unit.
+    /// Sets the unit.
     #[must_use]
     pub fn with_unit(self, unit: &'static str) -> Layer {
         Layer { unit, ..self }
     }
 
-    /// The same on this scale.
+    /// Sets the scale.
     #[must_use]
     pub fn with_scale(self, scale: Scale) -> Layer {
         Layer { scale, ..self }
     }
 
-    /// The same with these values at the ends of the palette, or with the minimum and maximum.
+    /// Sets the values at the ends of the palette; `None` uses the minimum and maximum.
     #[must_use]
     pub fn with_range(self, range: Option<[f32; 2]>) -> Layer {
         Layer { range, ..self }
     }
 }
 
-/// What a place with a name is.
+/// The kind of a named place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum PlaceKind {
-    /// A place: a dot.
+    /// A place, marked by a dot.
     #[default]
     Place,
-    /// A summit: a triangle, and its height.
+    /// A summit, marked by a triangle and labeled with its height.
     Summit,
-    /// A point near a river that is drawn: the name follows the river.
+    /// A point near a drawn river; the name follows the river.
     River,
     /// A lake or a sea.
     Water,
@@ -201,11 +201,11 @@ pub enum PlaceKind {
 pub struct PlaceName {
     /// The name.
     pub name: String,
-    /// What it is.
+    /// The kind of place.
     pub kind: PlaceKind,
-    /// The height of a summit in metres; by default that of the heights.
+    /// The height of a summit in metres; by default taken from the heights.
     pub height: Option<f64>,
-    /// The position in shares of the ground's width and height, from its north-west corner.
+    /// The position as shares of the ground's width and height, from its north-west corner.
     pub at: [f64; 2],
 }
 
@@ -216,7 +216,7 @@ pub struct LineName {
     pub name: String,
     /// Whether it is a river or other water.
     pub is_water: bool,
-    /// Positions in shares of the ground's width and height, from its north-west corner.
+    /// Positions as shares of the ground's width and height, from its north-west corner.
     pub points: Vec<[f64; 2]>,
 }
 
@@ -275,7 +275,7 @@ pub struct SheetOptions {
     pub shading: Shading,
     /// Contour interval in metres; by default chosen by relief and scale.
     pub interval: Option<f64>,
-    /// The heights of contours in metres, in place of an interval.
+    /// The heights of contours in metres, which replace an interval.
     pub levels: Option<Vec<f64>>,
     /// The contours that have labels: by default index contours, or all if their heights are given.
     pub labels: Option<Labels>,
@@ -295,7 +295,7 @@ pub struct SheetOptions {
     /// What the colors represent: the heights by default. The heights shade the relief in any case.
     pub coloring: Coloring,
     /// The heights at the ends of the palette, which make several sheets comparable; by default the minimum and maximum
-    /// of this one.
+    /// of this sheet.
     pub range: Option<[f32; 2]>,
     /// Minimum drainage area of rivers that are found in the heights, in m^2; by default it depends on the scale.
     pub river_area: Option<f64>,
@@ -303,9 +303,9 @@ pub struct SheetOptions {
     pub lake_area: Option<f64>,
     /// Rivers and lakes, if they are known; by default they are found in the heights.
     pub water: Option<KnownWater>,
-    /// Names of places, the most important first: those without room are left out.
+    /// Names of places, the most important first. Names without room are omitted.
     pub names: Vec<PlaceName>,
-    /// Names along lines, likewise.
+    /// Names along lines, the most important first. Names without room are omitted.
     pub line_names: Vec<LineName>,
     /// The denominator of the scale, if the page was chosen for one.
     pub map_scale: Option<f64>,
@@ -314,7 +314,7 @@ pub struct SheetOptions {
 }
 
 impl SheetOptions {
-    /// A sheet of all parts in this palette, without a title.
+    /// A sheet with all parts and this palette, without a title.
     pub fn new(palette: Palette) -> SheetOptions {
         SheetOptions {
             title: String::new(),
@@ -342,22 +342,22 @@ impl SheetOptions {
         }
     }
 
-    /// The same with this heading.
+    /// Sets the heading.
     pub fn with_title(self, title: impl Into<String>) -> SheetOptions {
         SheetOptions { title: title.into(), ..self }
     }
 
-    /// The same on this page.
+    /// Sets the page.
     pub fn with_page(self, page: Page) -> SheetOptions {
         SheetOptions { page, ..self }
     }
 
-    /// The same in this resolution.
+    /// Sets the resolution.
     pub fn with_resolution(self, resolution: Resolution) -> SheetOptions {
         SheetOptions { resolution, ..self }
     }
 
-    /// The same with a sea up to this height in metres.
+    /// Sets the sea level, in metres.
     pub fn with_sea_level(self, sea_level: f64) -> SheetOptions {
         SheetOptions { sea_level: Some(sea_level), ..self }
     }

@@ -47,7 +47,7 @@ impl Below<'_> {
 }
 
 impl Linework {
-    /// Draws all lines on the map. Returns the names that are not on it.
+    /// Draws all lines on the map. Returns the names that could not be placed.
     pub fn draw(&self, desk: &mut Desk, map: Rect, options: &SheetOptions, below: &Below) -> LeftOut {
         let across = map.width / (self.grid.width() - 1) as f32;
         let down = map.height / (self.grid.height() - 1) as f32;
@@ -70,7 +70,7 @@ impl Linework {
             false => Vec::new(),
         };
         let shore: Vec<Vec<Point>> = self.shore.iter().map(path).collect();
-        // Names and summits are drawn last, on top of the lines, but reserve their room first; names may cross rivers
+        // Names and summits are drawn last, on top of the lines, but reserve their room first. Names may cross rivers
         // and shores, because harbours and towns at rivers have no other room.
         let mut over =
             Desk { scene: Scene::new(desk.scene.size, String::new()), letters: desk.letters, colors: desk.colors };
@@ -92,7 +92,7 @@ impl Linework {
         let contours: Vec<(&Line, Vec<Point>)> = self.contours.iter().map(|line| (line, path(line))).collect();
         let contours = ContourLines::new(self, contours, options, desk.letters, map, &mut taken, ink);
         contours.draw_lines(&mut desk.scene);
-        // Thin rivers first, so that they end under the rivers that they flow into.
+        // Thin rivers are drawn first, so that they end under the rivers that they flow into.
         let mut widths: Vec<f32> = rivers.iter().map(|river| river.0).collect();
         widths.sort_by(f32::total_cmp);
         widths.dedup();

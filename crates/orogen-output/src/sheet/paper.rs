@@ -6,7 +6,7 @@ use std::str::FromStr;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Paper([f64; 2]);
 
-/// The papers that have a name, in portrait orientation.
+/// Named paper sizes, in portrait orientation.
 pub const NAMES: [(&str, [f64; 2]); 8] = [
     ("a0", [841.0, 1189.0]),
     ("a1", [594.0, 841.0]),
@@ -18,7 +18,7 @@ pub const NAMES: [(&str, [f64; 2]); 8] = [
     ("legal", [215.9, 355.6]),
 ];
 
-/// Minimum and maximum of a side, in millimetres.
+/// Minimum and maximum length of a side, in millimetres.
 const SIDES: [f64; 2] = [50.0, 2000.0];
 
 impl Paper {

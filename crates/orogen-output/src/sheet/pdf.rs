@@ -15,7 +15,7 @@ const POINT: f32 = 72.0 / 25.4;
 /// Compression level of streams: 0 to 10.
 const EFFORT: u8 = 6;
 
-/// Writes a scene as a single page of its size.
+/// Writes a scene as a PDF with one page of the same size.
 ///
 /// # Errors
 /// Errors of `out`.

@@ -11,7 +11,7 @@ use orogen_grid::grid::Grid;
 use orogen_io::palette::color::{Encoder, Rgb};
 use orogen_io::palette::tint::Tint;
 
-/// Room for its heading, for the heights on its left, on its right, and for the distances below it, in millimetres.
+/// Room for the heading, for the heights on the left, on the right, and for the distances below, in millimetres.
 const HEADING: f32 = 5.5;
 const LEFT: f32 = 12.5;
 const RIGHT: f32 = 5.0;
@@ -23,7 +23,7 @@ const STEP: f32 = 0.15;
 /// Maximum exaggeration of heights.
 const MOST: f64 = 50.0;
 
-/// The share of its height for the land, and the share below the land.
+/// Share of the height of a profile that the land takes, and the share below the land.
 const LAND: f64 = 0.80;
 const FOOT: f64 = 0.12;
 
@@ -40,7 +40,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// The labels of its ends.
+    /// The labels of the ends.
     fn names(self) -> [&'static str; 2] {
         match self {
             Direction::Eastward => ["A", "B"],
@@ -54,7 +54,7 @@ pub struct Profile {
     direction: Direction,
     /// The area of the drawing, without labels.
     area: Rect,
-    /// Position of its line on the map, down or across, 0 to 1.
+    /// Position of the profile's line on the map, down or across, 0 to 1.
     at: f32,
     /// The lowest height on the line.
     lowest: f32,
@@ -62,15 +62,15 @@ pub struct Profile {
     heights: Vec<f32>,
     /// Length in metres, from start to end.
     length: f64,
-    /// The heights at its bottom and its top.
+    /// The heights at the bottom and the top of the drawing.
     span: [f64; 2],
     exaggeration: f64,
     sea_level: Option<f64>,
 }
 
 /// A row of samples at `count` evenly spaced positions from its first sample to its last. If positions are denser than
-/// samples they are interpolated linearly; if they are sparser, each has the highest sample around it, so that summits
-/// are kept.
+/// samples, heights are interpolated linearly. If they are sparser, each takes the highest sample around it, so that
+/// summits are kept.
 fn along(row: &[f32], count: usize) -> Vec<f32> {
     let step = (row.len() - 1) as f64 / (count - 1).max(1) as f64;
     let last = row.len() - 1;
@@ -115,11 +115,11 @@ impl Profile {
         let sea_level = options.sea_level.filter(|_| options.palette.has_sea());
         let known = heights.iter().copied().filter(|height| height.is_finite());
         let lowest = known.fold(f32::MAX, f32::min);
-        // The sea is shown if it covers ground on the line.
+        // The sea is drawn if it covers ground on the line.
         let sea_level = sea_level.filter(|sea| f64::from(lowest) < *sea);
         let low = f64::from(lowest);
         let highest = f64::from(highest);
-        // Metres per millimetre across, and the size of the heights at that scale.
+        // Metres per millimetre across, and the height of the relief at that scale.
         let scale = length / f64::from(area.width);
         let natural = (highest - low) / scale;
         let exaggeration = (f64::from(area.height) * LAND / natural).min(MOST);
@@ -145,7 +145,7 @@ impl Profile {
         let mut marks: Vec<Vec<Point>> = Vec::new();
         let mut lines: Vec<Vec<Point>> = Vec::new();
         let decimals = if self.span[1] - self.span[0] < 20.0 { 1 } else { 0 };
-        // Heights are labeled in metres, whatever their size.
+        // Heights are labeled in metres, also when they are large.
         for (value, _) in ticks(self.span, (height / 6.5).max(2.0) as usize, Count::Latitude) {
             let (y, name) = (up(value), format!("{} m", grouped(value, decimals)));
             marks.push(line([[left, y], [left - 1.3, y]]));
@@ -166,7 +166,7 @@ impl Profile {
             let x = left + width * k as f32 / (self.heights.len() - 1) as f32;
             height.is_finite().then(|| Point::new(x, up(f64::from(*height))))
         };
-        // One line for each part without holes.
+        // One line for each part without missing heights.
         let places: Vec<Option<Point>> = self.heights.iter().enumerate().map(place).collect();
         let stretches = places.split(Option::is_none).map(|stretch| stretch.iter().copied().flatten().collect());
         desk.scene.lines(stretches.collect(), 0.22, desk.colors.ink, 1.0);
@@ -184,7 +184,7 @@ impl Profile {
         self.mark(desk, map);
     }
 
-    /// Marks its ends on the map: arrows inside the map's frame, with the labels of the ends.
+    /// Marks both ends of the profile on the map: arrows inside the map's frame, with labels.
     fn mark(&self, desk: &mut Desk, map: Rect) {
         let [start, end] = self.direction.names();
         for (name, end, inward) in [(start, 0.0, 1.0), (end, 1.0, -1.0)] {
@@ -222,8 +222,7 @@ impl Profile {
         let mut pixels = Vec::with_capacity(3 * columns * rows);
         for j in 0..rows {
             let metres = self.span[1] - (j as f64 + 0.5) * rise;
-            // Below the lowest ground on the line the color is that of the lowest ground; rock below the sea is not
-            // blue.
+            // Below the lowest ground on the line, the color of that ground is used. Rock below the sea is not blue.
             let is_land = self.sea_level.is_none_or(|sea| metres > sea);
             let color = match tint {
                 Some(tint) if is_land => encoder.bytes(tint.at((metres as f32).max(self.lowest))),

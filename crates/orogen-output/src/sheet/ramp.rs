@@ -36,7 +36,7 @@ pub struct Ramp {
 }
 
 impl Ramp {
-    /// The colors of `palette` over the samples of a layer, or over its range if that is given.
+    /// The colors of `palette` over the samples of a layer, or over its given range.
     ///
     /// # Errors
     /// If the palette is the atlas tint, or a logarithmic ramp has no positive value.
@@ -67,7 +67,7 @@ impl Ramp {
         }
         let mut palette = palette.clone();
         if layer.scale == Scale::Log {
-            // Colors at values stay at them; shares refer to the decades.
+            // Colors at values stay there; shares refer to the decades.
             palette.stops.retain(|stop| !matches!(stop.at, Position::Value(value) if value <= 0.0));
             for stop in &mut palette.stops {
                 if let Position::Value(value) = stop.at {

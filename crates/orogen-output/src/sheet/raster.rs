@@ -31,8 +31,8 @@ pub fn draw(scene: &Scene, dpi: f64) -> Canvas {
     Canvas::of(width, height, bands.concat())
 }
 
-/// Draws the items of a scene over rows of a picture from `top`, with `pixels` for each millimetre and the scene's
-/// upper left corner at `corner`, in pixels.
+/// Draws the items of a scene over rows of a picture, starting at row `top`, with `pixels` per millimetre. The scene's
+/// upper left corner is at `corner`, in pixels.
 pub fn draw_over(scene: &Scene, pixels: f32, corner: Point, top: usize, width: usize, bytes: &mut [u8]) {
     let rows: Vec<Rgb> = bytes.as_chunks::<3>().0.to_vec();
     if width == 0 || rows.len() < width {
@@ -63,7 +63,8 @@ struct Line {
 }
 
 impl<'a> Shape<'a> {
-    /// A shape at `scale` pixels for a millimetre, from `corner` in pixels.
+    /// Converts an item to pixels, with `scale` pixels per millimetre and the page's upper left corner at `corner`, in
+    /// pixels.
     fn of(item: &'a Item, scale: f32, corner: Point) -> Shape<'a> {
         match item {
             Item::Picture { area, width, height, pixels } => {
@@ -93,7 +94,7 @@ fn span(values: impl Iterator<Item = f32>) -> (f32, f32) {
     values.fold((f32::MAX, f32::MIN), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-/// An outline as straight edges, with every part closed.
+/// An outline as straight edges; every part is closed.
 fn edges(outline: &[Step], at: impl Fn(Point) -> Point) -> Vec<[Point; 2]> {
     let mut edges = Vec::new();
     let (mut first, mut here) = (Point::default(), Point::default());
@@ -226,7 +227,7 @@ impl Band {
 
     /// An area: every edge adds its signed coverage to the pixels on its right.
     fn area(&mut self, edges: &[[Point; 2]], ink: Rgb, cover: f32) {
-        // An extra column takes coverage beyond the page.
+        // An extra column absorbs coverage beyond the page.
         let stride = self.width + 2;
         let (left, right) = span(edges.iter().flatten().map(|place| place.x));
         let (from, to) = within(left - 1.0, right + 2.0, 0, self.width);
@@ -275,7 +276,7 @@ impl Band {
     }
 }
 
-/// An edge between two columns of one row, of a height within it: changes of coverage from pixel to pixel.
+/// Adds an edge between two columns of one row, with a height within the row: changes of coverage from pixel to pixel.
 fn accumulate(row: &mut [f32], height: f32, x0: f32, x1: f32) {
     let first = x0 as usize;
     let last = x1 as usize;
@@ -298,13 +299,13 @@ fn accumulate(row: &mut [f32], height: f32, x0: f32, x1: f32) {
     row[last + 1] += before;
 }
 
-/// The whole pixels between two positions, from `start`, at most `count`: as indices.
+/// The indices of whole pixels between two positions, from `start`, at most `count`.
 fn within(low: f32, high: f32, start: usize, count: usize) -> (usize, usize) {
     let clamp = |at: f32| (at - start as f32).clamp(0.0, count as f32);
     (clamp(low.floor()) as usize, clamp(high.ceil()) as usize)
 }
 
-/// Blends bytes instead of linear light, as [`Canvas`] does.
+/// Blends bytes instead of linear light, like [`Canvas`].
 fn over(pixel: &mut Rgb, ink: Rgb, share: f32) {
     for (under, ink) in pixel.iter_mut().zip(ink) {
         *under = (f32::from(*under) * (1.0 - share) + f32::from(ink) * share + 0.5) as u8;
@@ -333,7 +334,7 @@ mod tests {
 
     #[test]
     fn an_area_covers_what_it_is() {
-        // Across the borders of bands, at fractions of pixels.
+        // A square across the borders of bands, at fractions of pixels.
         let square = polygon([[10.25, 20.5], [70.75, 20.5], [70.75, 80.25], [10.25, 80.25]]);
         let canvas = drawn(vec![area(square.clone())]);
         assert!((dark(&canvas) - 60.5 * 59.75).abs() < 1.0, "{}", dark(&canvas));

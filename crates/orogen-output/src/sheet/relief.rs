@@ -32,7 +32,7 @@ pub enum Paint<'a> {
     Albedo(&'a [Grid; 3]),
 }
 
-/// The same at pixel centers.
+/// The resampled colors at pixel centers.
 enum Painted<'a> {
     Tint,
     Layer(Grid, &'a Ramp),
@@ -116,7 +116,7 @@ pub fn paint(
     bytes
 }
 
-/// The lowest and the highest land; two different numbers.
+/// The lowest and the highest land, always two different numbers.
 fn ends(grid: &Grid, sea_level: f32) -> (f32, f32) {
     let land = grid.data().iter().copied().filter(|height| height.is_finite() && *height > sea_level);
     let (low, high) = land.fold((f32::MAX, f32::MIN), |(low, high), height| (low.min(height), high.max(height)));

@@ -6,7 +6,7 @@ use orogen_io::palette::color::Rgb;
 /// Ink of text and frames.
 pub const INK: Rgb = [38, 36, 34];
 
-/// The page of a sheet without a color.
+/// Page color of a sheet for which no color was chosen.
 pub const WHITE: Rgb = [255; 3];
 
 /// A part of an outline, continuing from the end of the previous one.
@@ -59,7 +59,7 @@ pub enum Item {
 /// A page.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// Its size.
+    /// The size of the page.
     pub size: Size,
     /// The color of the page.
     pub page: Rgb,

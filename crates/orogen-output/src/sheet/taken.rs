@@ -1,4 +1,4 @@
-//! Which parts of a sheet are occupied, and by which line, by squares.
+//! The occupied parts of a sheet, and which line passes where, on a grid of squares.
 
 use super::geometry::{Point, Rect};
 
@@ -27,7 +27,7 @@ impl<T: Copy> Squares<T> {
         inside.then(|| j as usize * self.columns + i as usize)
     }
 
-    /// The squares within `reach` of a point; `None` for those outside the rectangle.
+    /// The squares within `reach` of a point; `None` for squares outside the rectangle.
     fn around(&self, place: Point, reach: f32) -> impl Iterator<Item = Option<usize>> + '_ {
         let steps = (reach / SQUARE).ceil() as i32;
         (-steps..=steps)
@@ -37,7 +37,7 @@ impl<T: Copy> Squares<T> {
     }
 }
 
-/// Points along a line, at most a square apart.
+/// Calls `each` with points along a line, at most a square apart.
 fn along(line: &[Point], mut each: impl FnMut(Point)) {
     for pair in line.windows(2) {
         let steps = (pair[0].distance(pair[1]) / SQUARE).ceil().clamp(1.0, 1e4) as usize;
@@ -52,12 +52,12 @@ fn along(line: &[Point], mut each: impl FnMut(Point)) {
 pub struct Taken(Squares<bool>);
 
 impl Taken {
-    /// Nothing occupied in a rectangle. Everything outside counts as occupied.
+    /// An empty rectangle. Everything outside it counts as occupied.
     pub fn none(area: Rect) -> Taken {
         Taken(Squares::filled(area, false))
     }
 
-    /// Marks all within `reach` of a point as occupied.
+    /// Marks everything within `reach` of a point as occupied.
     pub fn take(&mut self, place: Point, reach: f32) {
         let found: Vec<usize> = self.0.around(place, reach).flatten().collect();
         found.into_iter().for_each(|square| self.0.values[square] = true);
@@ -83,7 +83,7 @@ const NONE: u32 = u32::MAX;
 const SEVERAL: u32 = u32::MAX - 1;
 
 impl Passing {
-    /// The squares of lines, which are numbered by their order.
+    /// The squares through which these lines pass. Lines are numbered in their order.
     pub fn of<'a>(area: Rect, lines: impl Iterator<Item = &'a [Point]>) -> Passing {
         let mut passing = Passing(Squares::filled(area, NONE));
         for (line, nth) in lines.zip(0u32..SEVERAL) {

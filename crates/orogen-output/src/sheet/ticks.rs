@@ -70,7 +70,7 @@ pub fn step(length: f64, most: usize) -> f64 {
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|n| n * power).find(|step| *step >= rough * 0.999_999).unwrap_or(10.0 * power)
 }
 
-/// A number with narrow spaces between groups of three digits, and a proper minus sign.
+/// A number with narrow spaces between groups of three digits, and a typographic minus sign.
 pub fn grouped(value: f64, decimals: usize) -> String {
     let text = format!("{:.decimals$}", value.abs());
     let (whole, rest) = text.split_at(text.find('.').unwrap_or(text.len()));

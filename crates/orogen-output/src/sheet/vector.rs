@@ -14,8 +14,8 @@ use orogen_io::palette::color::hex;
 const TILE: usize = 432;
 
 /// Overlap of a tile with its right and lower neighbors, in pixels. Viewers blend the edge of a picture with the
-/// background; with the overlap the background of a tile's left and upper edge is the same picture, down to a scale of
-/// 1 to this many pixels.
+/// background. Because of the overlap, the background of a tile's left and upper edge is the same picture, down to a
+/// scale of 1 to this many pixels.
 const OVERLAP: usize = 16;
 
 /// Writes a scene, in millimetres.
@@ -38,7 +38,7 @@ pub fn write(out: &mut dyn Write, scene: &Scene) -> io::Result<()> {
             Item::Picture { area, width, height, pixels } => embed(out, *area, [*width, *height], pixels)?,
             Item::Lines { lines, width, ink, cover } => {
                 let paths = paths(lines);
-                // Translucent ink must have uniform opacity where lines of two paths meet.
+                // Translucent lines must have uniform opacity where two paths meet.
                 let (group, stroke) = if paths.len() > 1 { (*cover, 1.0) } else { (1.0, *cover) };
                 if paths.len() > 1 {
                     writeln!(out, "<g opacity=\"{group}\">")?;
@@ -151,7 +151,7 @@ fn paths(lines: &[Vec<Point>]) -> Vec<String> {
     paths
 }
 
-/// Writes a number of thousandths in as few characters as possible, with a separating space if needed.
+/// Writes a number of thousandths in as few characters as possible, after a space if `follows` requires one.
 fn thousandths(text: &mut String, number: i64, follows: bool) {
     if follows && number >= 0 {
         text.push(' ');

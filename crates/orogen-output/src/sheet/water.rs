@@ -1,4 +1,4 @@
-//! Rivers and lakes of a sheet: those of a known network, or found in its heights.
+//! Rivers and lakes of a sheet, from a known network or found in its heights.
 
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -29,7 +29,7 @@ pub struct Water {
     pub surface: Grid,
 }
 
-/// Water that is known, in columns and rows of the heights of a sheet.
+/// Known water, in columns and rows of the heights of a sheet.
 #[derive(Debug, Clone)]
 pub struct KnownWater {
     /// Stretches of river outside of lakes and the sea, with their drainage area in samples of the heights.
@@ -41,7 +41,7 @@ pub struct KnownWater {
 }
 
 impl KnownWater {
-    /// The same in columns and rows of a grid that covers the same land.
+    /// Converts the water to columns and rows of a grid that covers the same land.
     #[must_use]
     pub fn on(&self, grid: &Grid) -> Water {
         let sides = [self.levels.width(), self.levels.height()];
@@ -55,7 +55,7 @@ impl KnownWater {
         for j in 0..grid.height() {
             let levels = self.levels.row(near(j, y, sides[1]));
             for (i, height) in surface.row_mut(j).iter_mut().enumerate() {
-                // Not a number where there is no lake: then the ground is the larger one.
+                // Where there is no lake the level is NaN, and `max` keeps the ground.
                 *height = height.max(levels[near(i, x, sides[0])]);
             }
         }
@@ -73,7 +73,7 @@ const CUT: usize = 1;
 /// If there are too many shores.
 pub fn find(heights: &Grid, sea_level: Option<f32>, least: Least) -> Result<Water> {
     let window = Window::new(heights.width(), heights.height(), 1.0);
-    // In units of samples, as the result requires.
+    // In units of samples, like the result.
     let grid = Grid::from_data(window, heights.data().to_vec()).filter(|_| window.width.min(window.height) > 2);
     let Some(grid) = grid else {
         return Ok(Water { rivers: Vec::new(), lakes: Vec::new(), surface: heights.clone() });

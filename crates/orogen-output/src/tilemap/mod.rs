@@ -1,4 +1,4 @@
-//! Tiles: a [`tileset`], those that the program draws ([`art`]), and their [`picture`].
+//! Tiles: a [`tileset`], the built-in tilesets ([`art`]), and their [`picture`].
 
 #[doc(hidden)]
 pub mod art;

@@ -20,10 +20,10 @@ impl Tileset {
         })
     }
 
-    /// Draws a row of tiles over a line of pixels of `depth` bytes: row `y` of their pixels, every `by`th pixel, or one
+    /// Draws row `y` of the pixels of a row of tiles into a line of pixels of `depth` bytes: every `by`th pixel, or one
     /// pixel for each `by / size` tiles.
     pub fn draw(&self, tiles: &[u32], [by, y]: [usize; 2], line: &mut [u8], depth: usize) {
-        // Pixels of the picture for each tile, and tiles of the map for each of the picture.
+        // Pixels of the picture per tile, and tiles of the map per pixel of the picture.
         let [side, step] = [(self.size / by).max(1), (by / self.size).max(1)];
         for (tile, place) in tiles.iter().step_by(step).zip(line.chunks_exact_mut(side * depth)) {
             let Some(tile) = shown(*tile) else { continue };
@@ -42,7 +42,7 @@ fn blend(pixel: &mut [u8], over: Rgba) {
         return;
     }
     let under = pixel.get(3).map_or(255, |opacity| u32::from(*opacity));
-    // What is left of the pixel below, and the opacity of both, in 255ths of 255ths.
+    // The remaining share of the pixel below, and the opacity of both, in units of 1 / 255^2.
     let left = under * (255 - opacity);
     let both = (opacity * 255 + left).max(1);
     for (below, over) in pixel.iter_mut().zip(over).take(3) {

@@ -1,15 +1,15 @@
-//! Rows of tiles and classes as the numbers of files.
+//! Rows of tiles and classes as numbers in files.
 
 use std::fmt::Write as _;
 
 use super::tileset::{Tileset, shown};
 
-/// The bits of flips in a cell of Godot.
+/// The flip bits in a cell of Godot.
 const FLIP_X: u16 = 1 << 12;
 const FLIP_Y: u16 = 1 << 13;
 const TRANSPOSE: u16 = 1 << 14;
 
-/// Numbers with commas between them.
+/// Numbers separated by commas.
 #[must_use]
 pub fn listed(numbers: &[u32]) -> String {
     let mut text = String::with_capacity(3 * numbers.len());
@@ -20,7 +20,7 @@ pub fn listed(numbers: &[u32]) -> String {
     text
 }
 
-/// The cells of a row of a `TileMapLayer` of Godot: column, row, source, column and row in the picture, and flips, two
+/// The cells of a row of a Godot `TileMapLayer`: column, row, source, column and row in the picture, and flips, two
 /// bytes each.
 #[must_use]
 pub fn godot_cells(tileset: &Tileset, tiles: &[u32], row: usize) -> Vec<u8> {
@@ -39,7 +39,7 @@ pub fn godot_cells(tileset: &Tileset, tiles: &[u32], row: usize) -> Vec<u8> {
     cells
 }
 
-/// The `gridTiles` of a row of a map of LDtk, each but the first of all after a comma.
+/// The `gridTiles` of a row of an LDtk map. A comma precedes each tile except the first of the map.
 #[must_use]
 pub fn ldtk_tiles(tileset: &Tileset, tiles: &[u32], row: usize, is_first: &mut bool) -> String {
     let (size, columns) = (tileset.size, tileset.columns);

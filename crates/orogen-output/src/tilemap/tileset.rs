@@ -1,4 +1,4 @@
-//! Tilesets: the picture of the tiles, and what each tile is for.
+//! Tilesets: the picture of the tiles, and where each tile fits.
 
 use orogen_grid::autotile::choose::{ClassTiles, Tiles, Variant, WangTiles};
 use orogen_grid::autotile::drawable::Drawable;
@@ -11,22 +11,22 @@ pub type Rgba = [u8; 4];
 /// A terrain class of a tileset.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Terrain {
-    /// Its name, such as `grass`.
+    /// The name, such as `grass`.
     pub name: String,
-    /// The color that stands for it in lists and editors: red, green, blue.
+    /// The color that represents the class in lists and editors: red, green, blue.
     pub color: [u8; 3],
 }
 
 /// A tile.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tile {
-    /// Its number in the picture.
+    /// Number of the tile in the picture.
     pub picture: u32,
-    /// How it is turned.
+    /// How the tile is flipped or rotated.
     pub flip: Flip,
-    /// Where it fits.
+    /// Where the tile fits.
     pub fit: Fit,
-    /// How often it is drawn, compared with the other tiles that fit the same places.
+    /// How often the tile is drawn, relative to the other tiles that fit the same position.
     pub weight: f32,
 }
 
@@ -37,15 +37,15 @@ pub enum Fit {
     Layer {
         /// The class.
         class: u8,
-        /// The reduced mask of where the layer goes on: see [`orogen_grid::autotile::mask`].
+        /// The reduced mask of the neighbors in which the layer continues: see [`orogen_grid::autotile::mask`].
         mask: u8,
     },
-    /// A tile that shows all classes of its place, by its [wang id](Layout::wang_id).
+    /// A tile that shows all classes at its position, by its [wang id](Layout::wang_id).
     Wang([u8; 8]),
 }
 
 impl Fit {
-    /// What the tile fits when it is turned.
+    /// What the tile fits after a flip or rotation.
     #[must_use]
     pub fn turned(self, flip: Flip) -> Fit {
         match self {
@@ -55,30 +55,30 @@ impl Fit {
     }
 }
 
-/// The bit of a flip in the number of a tile, as in the maps of Tiled.
+/// The flip bits in the number of a tile, as in Tiled maps.
 const DIAGONAL: u32 = 1 << 29;
 const UPSIDE_DOWN: u32 = 1 << 30;
 const MIRRORED: u32 = 1 << 31;
 
-/// Tiles of a picture from this number on have no number in a map.
+/// Upper limit of tile numbers: tiles of a picture from this number on cannot be used in a map.
 pub const MAX_TILES: usize = DIAGONAL as usize;
 
-/// The number of a tile in a map: that in the picture, with the flips in the upper bits.
+/// The number of a tile in a map: its number in the picture, with the flips in the upper bits.
 #[must_use]
 pub fn number(picture: u32, flip: Flip) -> u32 {
     let bit = |is_set: bool, bit: u32| if is_set { bit } else { 0 };
     picture | bit(flip.diagonal, DIAGONAL) | bit(flip.y, UPSIDE_DOWN) | bit(flip.x, MIRRORED)
 }
 
-/// The number in the picture and the flips of a tile of a map.
+/// The number in the picture and the flips of a tile of a map; the inverse of [`number`].
 #[must_use]
 pub fn parts(number: u32) -> (u32, Flip) {
     let has = |bit: u32| number & bit != 0;
     (number & (DIAGONAL - 1), Flip { diagonal: has(DIAGONAL), x: has(MIRRORED), y: has(UPSIDE_DOWN) })
 }
 
-/// The number in the picture and the flips of a tile in the files of a map, which has 0 where there is no tile, and
-/// otherwise 1 more than its [number].
+/// The number in the picture and the flips of a tile in map files, where 0 means no tile, and all other values are 1
+/// more than the [number].
 #[must_use]
 pub fn shown(tile: u32) -> Option<(u32, Flip)> {
     tile.checked_sub(1).map(parts)
@@ -87,21 +87,21 @@ pub fn shown(tile: u32) -> Option<(u32, Flip)> {
 /// A tileset. Tile n of the picture is in column n % `columns` and row n / `columns`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tileset {
-    /// Its name.
+    /// The name.
     pub name: String,
     /// Width and height of a tile, in pixels.
     pub size: usize,
-    /// How its tiles follow their surroundings.
+    /// How the tiles depend on their surroundings.
     pub layout: Layout,
-    /// Whether its tiles show all classes of their place, so that a map has one layer.
+    /// Whether the tiles show all classes at their position, so that a map has a single layer.
     pub is_wang: bool,
     /// The terrain classes, bottom to top.
     pub terrains: Vec<Terrain>,
-    /// The tiles, each as often as there are places that it fits.
+    /// The tiles. A tile that fits several positions is listed once for each.
     pub tiles: Vec<Tile>,
-    /// Which flips and turns are allowed. [`Tileset::tiles`] holds them.
+    /// The allowed flips and rotations. [`Tileset::tiles`] already includes them.
     pub flips: Flips,
-    /// Whether turned tiles are drawn only where no other tile fits.
+    /// Whether flipped or rotated tiles are drawn only where no other tile fits.
     pub prefers_unturned: bool,
     /// Number of tiles in the picture.
     pub count: usize,
@@ -124,7 +124,7 @@ impl Tileset {
         self.count.div_ceil(self.columns.max(1)) * self.size
     }
 
-    /// The pixel of a turned tile.
+    /// The pixel of a flipped or rotated tile.
     #[inline]
     #[must_use]
     pub fn pixel(&self, (picture, flip): (u32, Flip), at: [usize; 2]) -> Rgba {
@@ -139,7 +139,7 @@ impl Tileset {
         &self.pixels[start..start + self.size]
     }
 
-    /// Its tiles, for [`orogen_grid::autotile::choose::layers`].
+    /// The tiles, for [`orogen_grid::autotile::choose::layers`].
     #[must_use]
     pub fn choices(&self) -> Tiles {
         let variant = |tile: &Tile| Variant { tile: number(tile.picture, tile.flip), weight: tile.weight };
@@ -160,7 +160,7 @@ impl Tileset {
         Tiles::Layers((0..self.terrains.len()).map(of).collect())
     }
 
-    /// What it can draw.
+    /// What the tileset can draw.
     #[must_use]
     pub fn drawable(&self) -> Drawable {
         if self.is_wang {
@@ -179,7 +179,8 @@ impl Tileset {
         Drawable::new(self.layout, masks.iter().skip(1).map(Vec::as_slice))
     }
 
-    /// Adds the turned tiles that `flips` allows. If `prefers_unturned`, only those that fit where no other tile does.
+    /// Adds the flipped and rotated tiles that `flips` allows. With `prefers_unturned`, adds only tiles that fit where
+    /// no other tile does.
     #[must_use]
     pub fn with_flips(mut self, flips: Flips, prefers_unturned: bool) -> Tileset {
         let own = self.tiles.clone();

@@ -1,4 +1,4 @@
-//! The grounds: what a terrain looks like away from its borders, and how its borders are drawn.
+//! The grounds: the appearance of a terrain away from its borders, and of its borders.
 
 use orogen_grid::random::Random;
 
@@ -10,30 +10,30 @@ const fn ink(hex: u32) -> Ink {
     [(hex >> 16) as u8, (hex >> 8) as u8, hex as u8]
 }
 
-/// A mark on a ground: pixels as (column, row, ink) from its upper left corner, in the units of the tile.
+/// A mark on a ground: pixels as (column, row, ink) from its upper left corner, in pixels of the tile.
 type Mark = &'static [(i8, i8, u8)];
 
-/// What a terrain looks like.
+/// The appearance of a terrain.
 #[derive(Debug, Clone, Copy)]
 pub struct Ground {
-    /// The name of its class.
+    /// The name of the terrain's class.
     pub name: &'static str,
-    /// The inks: the ground itself, then those that its marks use.
+    /// The inks: the ground itself, then the inks of its marks.
     inks: [Ink; 4],
-    /// The marks, each with how many are drawn on a plain tile of 16 x 16 pixels.
+    /// The marks, each with the number that are drawn on a plain tile of 16 x 16 pixels.
     marks: &'static [(Mark, u8)],
-    /// Marks that only some tiles have.
+    /// Marks that are only in some tiles.
     rare: &'static [Mark],
     /// Whether the ground is a roof of trees.
     is_forest: bool,
     /// The line along the border.
     outline: Ink,
-    /// The line beside it where the border faces the light, in the north.
+    /// The line next to the outline where the border faces the light, in the north.
     rim: Ink,
     /// A wall where the border faces south: its inks, and its height in pixels of a tile of 16.
     wall: Option<([Ink; 2], f64)>,
-    /// Bands that are drawn outside of the border, on the ground below, from the border outward: the ink and the outer
-    /// side of each in pixels of a tile of 16.
+    /// Bands outside of the border, on the ground below, from the border outward: the ink and the outer edge of each,
+    /// in pixels of a tile of 16.
     halo: &'static [(Ink, f64)],
     /// Its border.
     pub border: Border,
@@ -148,14 +148,15 @@ pub const GROUNDS: [Ground; 6] = [
     },
 ];
 
-/// Variants of a full tile, with their weights: the plain one, others with the same marks elsewhere, and one with a
+/// Weights of the variants of a full tile: the plain one, two with the same marks at other positions, and one with a
 /// rare mark.
 pub const VARIANTS: [f32; 4] = [6.0, 3.0, 3.0, 1.0];
 
-/// How the four trees of a tile differ: to the right, down and larger, in parts of the distance between trees.
+/// Variation of the four trees of a tile: shift to the right, shift down and increase in size, relative to the distance
+/// between trees.
 const TREES: [[f64; 3]; 4] = [[0.06, 0.0, 0.04], [-0.1, 0.08, -0.06], [-0.08, -0.07, -0.03], [0.1, 0.03, 0.05]];
 
-/// A ground on a square tile of a number of pixels.
+/// A ground drawn on a square tile.
 #[derive(Debug, Clone)]
 pub struct Texture {
     side: usize,
@@ -163,7 +164,7 @@ pub struct Texture {
 }
 
 impl Texture {
-    /// The texture of a ground for a variant.
+    /// Draws the texture of a ground for a variant.
     #[must_use]
     pub fn new(ground: &Ground, side: usize, variant: usize) -> Texture {
         let mut texture = Texture { side, pixels: vec![ground.inks[0]; side * side] };
@@ -175,7 +176,7 @@ impl Texture {
         let mut random =
             Random::new(variant as u64 + 1, ground.name.len() as u64 + u64::from(ground.name.as_bytes()[0]));
         let mut taken: Vec<[i64; 4]> = Vec::new();
-        // Larger tiles have the same number of marks on a length, not on an area: they look calmer.
+        // The number of marks grows with the side of the tile, not with its area, so larger tiles look calmer.
         let more = (side / 16).max(1);
         let rare = if variant + 1 == VARIANTS.len() { ground.rare } else { Default::default() };
         let common =
@@ -204,11 +205,11 @@ impl Texture {
         texture
     }
 
-    /// Round tree tops in staggered rows, which go on across the tile's sides. Variants differ in which trees are
-    /// light.
+    /// Draws round tree tops in staggered rows, which continue across the tile's sides. Variants differ in which trees
+    /// are light.
     fn roof(&mut self, ground: &Ground, variant: usize) {
         let step = self.side as f64 / 2.0;
-        // From back to front, so that each row covers the one behind.
+        // From back to front, so that each row covers the row behind it.
         for row in -1..=3_i64 {
             for column in -2..=2_i64 {
                 let tree = (row.rem_euclid(2) + 2 * column.rem_euclid(2)) as usize;
@@ -220,7 +221,7 @@ impl Texture {
         }
     }
 
-    /// A tree top; of kind 0 it is lighter than of the others.
+    /// Draws a tree top; trees of kind 0 are lighter than the others.
     fn tree(&mut self, ground: &Ground, [cx, cy]: [f64; 2], radius: f64, kind: usize) {
         let lighter = if kind == 0 { 0.15 } else { -0.1 };
         for y in 0..self.side {
@@ -253,13 +254,14 @@ impl Texture {
 }
 
 impl Ground {
-    /// The color that stands for it.
+    /// The representative color of the ground.
     #[must_use]
     pub fn color(&self) -> Ink {
         self.inks[0]
     }
 
-    /// The ink of a pixel at a place; `None` outside, where the ground below is seen. `column` is the pixel's column.
+    /// The ink of a pixel at a position; `None` outside, where the ground below is visible. `column` is the pixel's
+    /// column.
     #[must_use]
     pub fn ink(&self, place: BorderPoint, texture: Ink, column: usize) -> Option<Ink> {
         let BorderPoint { inside, south } = place;

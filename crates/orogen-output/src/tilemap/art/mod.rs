@@ -1,4 +1,4 @@
-//! The tilesets that the program draws: water, sand, grass, forest, rock and snow.
+//! The built-in tilesets: water, sand, grass, forest, rock and snow.
 
 pub mod edge;
 pub mod ground;

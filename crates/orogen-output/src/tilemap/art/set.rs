@@ -1,4 +1,4 @@
-//! The tilesets of the program, drawn at any layout.
+//! The built-in tilesets, which can be drawn in any layout.
 
 use orogen_grid::autotile::flip::{Flip, Flips};
 use orogen_grid::autotile::mask::Layout;
@@ -6,12 +6,12 @@ use orogen_grid::autotile::mask::Layout;
 use super::ground::{GROUNDS, Texture, VARIANTS};
 use crate::tilemap::tileset::{Fit, Rgba, Terrain, Tile, Tileset};
 
-/// A tileset that the program draws.
+/// A built-in tileset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Set {
-    /// Its name.
+    /// The name.
     pub name: &'static str,
-    /// What it shows, in a line.
+    /// A one-line description.
     pub about: &'static str,
     /// Pixels along the side of a tile.
     pub size: usize,
@@ -27,7 +27,7 @@ pub const SETS: [Set; 2] = [
 const COLUMNS: usize = 16;
 
 impl Set {
-    /// The set of this name.
+    /// The set with this name.
     #[must_use]
     pub fn named(name: &str) -> Option<&'static Set> {
         SETS.iter().find(|set| set.name == name)
@@ -85,7 +85,7 @@ impl Set {
     }
 }
 
-/// The pixels of a tile; those without an ink are transparent.
+/// The pixels of a tile; pixels without an ink are transparent.
 fn pixels(size: usize, ink: impl Fn(usize, usize) -> Option<[u8; 3]>) -> Vec<Rgba> {
     let at = |n: usize| match ink(n % size, n / size) {
         Some([red, green, blue]) => [red, green, blue, 255],
