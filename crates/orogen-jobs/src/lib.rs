@@ -3,13 +3,13 @@
 //! - [`export`]: a registry of layers and formats, for every front end.
 //! - [`jobs`]: a map sheet or a rendered picture of a world as one job.
 //! - [`options`]: declarations of options, from which front ends derive theirs.
-//! - [`builder`]: worlds of any size into files, with resume.
+//! - [`builder`]: worlds of any size written to files, with resume.
 //! - [`tilemap`]: terrain classes drawn with tiles.
-//! - [`fit`]: recipes like a real place.
+//! - [`fit`]: recipes fitted to a real place.
 //! - [`graph_layout`]: boxes and wires in columns.
 //!
 //! A job reads options, requests layers, and puts files in place. The crates below it process the samples. This crate
-//! is therefore compiled without optimization, which takes an eighth of the time.
+//! is therefore compiled without optimization, which reduces its compile time to an eighth.
 #![forbid(unsafe_code)]
 
 pub mod builder;

@@ -1,4 +1,4 @@
-//! Blocks of tiles that are made together, as large as memory allows and threads can use.
+//! Blocks of tiles that are made together. They are as large as memory allows and threads can use.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +8,8 @@ use orogen_engine::world::World;
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 
-/// Minimum number of tiles per thread in a block; with fewer, threads wait for each other at its end.
+/// Minimum number of tiles per thread in a block; with fewer, threads would wait for each other at the end of the
+/// block.
 const TILES_A_THREAD: usize = 4;
 
 /// Number of tiles that are made together, across and down.
@@ -66,7 +67,7 @@ impl Block {
                 if some.len() == (bottom - top) * (right - left) {
                     groups.push(some);
                 } else {
-                    // The rest of a partial block is made tile by tile, so that nothing is computed twice.
+                    // The tiles of a partial block are made one by one, so that nothing is computed twice.
                     groups.extend(some.into_iter().map(|tile| vec![tile]));
                 }
             }
@@ -84,7 +85,7 @@ fn memory(world: &World, target: &dyn BuildTarget, layers: &[&str], columns: usi
     Ok(world.memory_of(&world.plan_within(layers, &window, allowed)?)?.saturating_add(beside))
 }
 
-/// Memory beside a block, in bytes: for each thread a tile cut out of it, and its encoding.
+/// Memory in addition to a block, in bytes: for each thread a tile cut out of it, and its encoding.
 pub fn memory_beside(world: &World, target: &dyn BuildTarget, layers: &[&str]) -> u64 {
     let tile = target.window(0, 0).len() as u64 * 4 + target.scratch_memory();
     tile.saturating_mul((layers.len() * world.threads()) as u64)

@@ -1,4 +1,4 @@
-//! A Cloud-Optimized GeoTIFF: compressed tiles and coarser samples are kept beside it until all exist.
+//! A Cloud-Optimized GeoTIFF. Compressed tiles and coarser samples are kept in temporary files until all exist.
 //!
 //! Its bytes equal those of [`orogen_io::format::geotiff::writer`] for the same samples.
 
@@ -94,7 +94,7 @@ impl Part {
 }
 
 impl Cog {
-    /// The target of a build.
+    /// Creates the target of a build.
     ///
     /// # Errors
     /// If a GeoTIFF cannot have these sides or tiles.

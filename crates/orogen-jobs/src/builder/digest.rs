@@ -13,9 +13,9 @@ const BUFFER: usize = 1 << 20;
 /// Length and checksum of a written file, to detect changes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FileDigest {
-    /// Its length in bytes.
+    /// The length in bytes.
     pub length: u64,
-    /// Its SHA-256, in hexadecimal digits.
+    /// The SHA-256 in hexadecimal digits.
     pub sha256: String,
 }
 
@@ -62,7 +62,7 @@ impl<W: Write> Measured<W> {
         Measured { inner, hash: Sha256::new(), length: 0 }
     }
 
-    /// The writer, and the digest.
+    /// Returns the writer and the digest.
     pub fn end(self) -> (W, FileDigest) {
         (self.inner, FileDigest { length: self.length, sha256: hex::encode(&self.hash.finalize()) })
     }

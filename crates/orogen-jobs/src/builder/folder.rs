@@ -26,8 +26,8 @@ const MANIFEST: &str = "manifest.json";
 /// Maximum side of a tile, in samples.
 const LARGEST: usize = 16_384;
 
-/// The target. Integer formats need the range of the whole window first: one stage stores the samples as floats, and a
-/// second one converts them.
+/// The target. Integer formats need the range of the whole window first, so one stage stores the samples as floats and
+/// a second one converts them.
 pub struct Folder {
     identity: Identity,
     samples: Samples,
@@ -37,10 +37,10 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// The target of a build.
+    /// Creates the target of a build.
     ///
     /// # Errors
-    /// If tiles cannot have such a side.
+    /// If tiles cannot have this side.
     pub fn new(identity: &Identity, samples: Samples, about: &str, sea_level: f64) -> Result<Folder> {
         if !(2..=LARGEST).contains(&identity.tile) {
             let message = format!(
@@ -72,7 +72,7 @@ impl Folder {
         layers.map(move |layer| JobFile::Scratch(format!("samples/{layer}/{}/{}", job.row, job.column).into()))
     }
 
-    /// The range of a layer that is mapped to all levels.
+    /// The range of a layer that is mapped to all integer levels.
     fn levels(store: &OutputStore, layer: usize) -> Levels {
         let [low, high] = store.range(layer).unwrap_or([0.0; 2]);
         Levels::new(low, high)
@@ -213,7 +213,7 @@ impl BuildTarget for Folder {
     }
 
     fn scratch_memory(&self) -> u64 {
-        // Squared, as bytes, encoded.
+        // The square, its bytes, and the encoded file.
         12 * (self.identity.tile * self.identity.tile) as u64
     }
 

@@ -10,10 +10,10 @@ use orogen_grid::{hex, words};
 use orogen_io::format::dem::Georeference;
 use sha2::{Digest, Sha256};
 
-/// Everything that the bytes of a result depend on. Threads and memory are not part of it.
+/// Everything that the bytes of a result depend on. The number of threads and the memory limit are not part of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Identity {
-    /// The program's version, because other versions may make other terrain or files.
+    /// The program's version, because other versions may produce different terrain or files.
     pub version: String,
     /// The form of the result: "cog", "zarr", ...
     pub form: String,
@@ -33,10 +33,10 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// The identity of a build with a known tile.
+    /// The identity of a build whose tile side is known.
     ///
     /// # Errors
-    /// If the world has no such layer.
+    /// If the world does not have one of the layers.
     pub fn of(world: &World, spec: &BuildSpec, tile: usize) -> Result<Identity> {
         let mut hash = Sha256::new();
         let mut units = Vec::new();
@@ -56,7 +56,7 @@ impl Identity {
         })
     }
 
-    /// What `begun` has that this one has not, as text to follow "it was begun"; `None` if they are the same.
+    /// What `begun` differs in, as text to follow "it was begun"; `None` if the two are the same.
     pub fn difference(&self, begun: &Identity) -> Option<String> {
         let window = |window: &Window| {
             let Window { x, y, width, height, cell } = window;

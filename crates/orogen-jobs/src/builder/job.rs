@@ -33,10 +33,10 @@ impl Stage {
     }
 }
 
-/// A file that a job makes.
+/// A file that a job writes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum JobFile {
-    /// Part of the result: a path within it.
+    /// Part of the result: a path within the result.
     Result(PathBuf),
     /// A temporary file: a path within the scratch folder.
     Scratch(PathBuf),
@@ -45,7 +45,7 @@ pub enum JobFile {
 /// The output of a job.
 #[derive(Debug, Default)]
 pub struct Made {
-    /// The content of each of its files, in the order of its places.
+    /// The content of each file, in the order of [`places`](super::target::BuildTarget::places).
     pub files: Vec<Vec<u8>>,
     /// Minimum and maximum finite sample of each layer, if they are needed later.
     pub ranges: Vec<[f32; 2]>,
@@ -54,7 +54,7 @@ pub struct Made {
 /// The journal's record of a completed job.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
-    /// The digests of its files.
+    /// The digests of the files.
     pub digests: Vec<FileDigest>,
     /// As in [`Made`].
     pub ranges: Vec<[f32; 2]>,

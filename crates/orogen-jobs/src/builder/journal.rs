@@ -23,7 +23,7 @@ enum Line {
     /// be infinite.
     #[serde(rename = "tile")]
     Done([usize; 3], Vec<(u64, String)>, Vec<[u32; 2]>),
-    /// The build is complete; the files that belong to no tile, by their paths within the result.
+    /// The build is complete. Lists the files that belong to no tile, by their paths within the result.
     #[serde(rename = "finished")]
     Finished(Vec<(PathBuf, u64, String)>),
 }
@@ -38,7 +38,7 @@ pub struct JournalState {
     pub identity: Identity,
     /// The completed jobs.
     pub records: BTreeMap<Job, Record>,
-    /// If the build is complete: the files that belong to no tile.
+    /// The files that belong to no tile, if the build is complete.
     pub finished: Option<Vec<(PathBuf, FileDigest)>>,
 }
 
@@ -52,7 +52,7 @@ impl JournalState {
     /// Reads the journal at `path`; `None` if there is none. Damaged or truncated lines after the first are ignored.
     ///
     /// # Errors
-    /// If it cannot be read, or its first line is not that of a journal.
+    /// If it cannot be read, or its first line is not the first line of a journal.
     pub fn read(path: &Path) -> Result<Option<JournalState>> {
         let bytes = match fs::read(path) {
             Ok(bytes) => bytes,
@@ -68,7 +68,7 @@ impl JournalState {
         })
     }
 
-    /// The state in the bytes of a journal; `None` if the first line is not that of one.
+    /// The state in the bytes of a journal; `None` if the first line is not valid.
     #[must_use]
     pub fn parse(bytes: &[u8]) -> Option<JournalState> {
         let mut lines = bytes.split(|byte| *byte == b'\n').map(parse);
@@ -129,8 +129,8 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Writes a journal of `state` that replaces an existing one, and opens it for appending. `temporary` is a file
-    /// beside it that no other process uses.
+    /// Writes a journal with `state` that replaces an existing one, and opens it for appending. `temporary` is a path
+    /// in the same folder that no other process uses.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -205,7 +205,7 @@ mod tests {
         state.finished = Some(vec![("a/b".into(), FileDigest::of(b"x"))]);
         Journal::write(&path, &temporary, &state).unwrap();
         assert_eq!(JournalState::read(&path).unwrap().as_ref(), Some(&state));
-        // Truncated after the first line, it contains fewer jobs, and never different ones.
+        // Truncated after the first line, it contains fewer jobs, but never different ones.
         let bytes = fs::read(&path).unwrap();
         let first = bytes.iter().position(|byte| *byte == b'\n').unwrap();
         for end in first..bytes.len() {

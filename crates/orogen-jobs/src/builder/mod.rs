@@ -3,15 +3,15 @@
 //! A [`spec::BuildSpec`] states the window, the layers and the form of the result. A [`run::Build`] makes it tile by
 //! tile; each tile is written atomically and recorded with its checksum in a journal. After any interruption (a kill, a
 //! full disk, a power cut), a resumed build keeps the intact tiles, makes the others and ends with the same bytes as an
-//! uninterrupted one.
+//! uninterrupted build.
 //!
 //! **Files.** Tiles that are files of the result are written to their final place. Temporary files (compressed tiles of
-//! a file that is assembled at the end, coarser samples) are in a folder beside the result, `OUT.build`, with the
+//! a file that is assembled at the end, coarser samples) are in a folder next to the result, `OUT.build`, with the
 //! journal and a lock. After completion only the journal remains there; a later resume uses it to check whether the
 //! result is still intact, and to make damaged parts again.
 //!
 //! **Safety.** A tile counts as complete only if the journal has an entry for it *and* the file has the length and
-//! SHA-256 of that entry. Files therefore need not be synced one by one: those lost in a power cut are detected and
+//! SHA-256 of that entry. Files therefore need not be synced one by one: files lost in a power cut are detected and
 //! made again. All files are synced once before the result is declared complete.
 
 mod blocks;

@@ -30,7 +30,7 @@ pub struct OutputStore<'a> {
 }
 
 impl<'a> OutputStore<'a> {
-    /// From the records of completed jobs.
+    /// Creates a store with the records of completed jobs.
     pub fn new(
         work_dir: &'a WorkDir,
         journal: Journal,
@@ -70,7 +70,7 @@ impl<'a> OutputStore<'a> {
         Ok(FileDigest::of(bytes))
     }
 
-    /// Writes a file of the result that is JSON, indented.
+    /// Writes a file of the result as indented JSON.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -91,7 +91,7 @@ impl<'a> OutputStore<'a> {
             body(&mut out)?;
             let (file, digest) = out.into_inner().map_err(io::IntoInnerError::into_error)?.end();
             if let Ok(there) = fs::metadata(path) {
-                // Some file systems do not support permissions; that is no reason to fail.
+                // Some file systems do not support permissions; errors are ignored.
                 let _ = file.set_permissions(there.permissions());
             }
             file.sync_all()?;
@@ -125,7 +125,7 @@ impl<'a> OutputStore<'a> {
         self.records.lock().unwrap_or_else(PoisonError::into_inner).get(&job).cloned()
     }
 
-    /// Minimum and maximum finite sample of a layer, over all jobs with ranges; `None` if no sample is finite.
+    /// Minimum and maximum finite sample of a layer over all jobs; `None` if no sample is finite.
     pub fn range(&self, layer: usize) -> Option<[f32; 2]> {
         let records = self.records.lock().unwrap_or_else(PoisonError::into_inner);
         let ranges = records.values().filter_map(|record| record.ranges.get(layer));

@@ -27,12 +27,12 @@ use orogen_grid::progress::Progress;
 use orogen_io::file::Output;
 use orogen_io::fs;
 
-/// Treatment of existing results.
+/// How existing results are treated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Start {
     /// There must be no existing result.
     Fresh,
-    /// Continue the same build, if it was started, and keep intact tiles.
+    /// Continue the same build if it was started, and keep intact tiles.
     Resume,
     /// Start again, replacing the files of an earlier build.
     Force,
@@ -44,15 +44,15 @@ const PACKING: f64 = 15.0;
 /// Statistics of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
-    /// Tiles made in this run, including those of overviews and lower zooms.
+    /// Tiles made in this run, including tiles of overviews and lower zooms.
     pub made: usize,
     /// Tiles that existed and were intact.
     pub kept: usize,
-    /// Existing tiles that were computed again because others are derived from them.
+    /// Existing tiles that were computed again because new tiles are derived from them.
     pub again: usize,
     /// The count of samples computed in this run, over all layers.
     pub samples: FiniteCount,
-    /// Files in the result's folder that no build has made, by their paths within it; they were kept.
+    /// Files in the result's folder that no build made, by their paths within it; they were kept.
     pub foreign: Vec<PathBuf>,
     /// Size of the result's tiles, or of the single file, in bytes.
     pub bytes: u64,
@@ -91,8 +91,7 @@ pub struct Build<'a> {
 impl<'a> Build<'a> {
     /// Checks that the build is possible. Nothing is written.
     ///
-    /// # Errors
-    /// If the specification or the path is invalid, the world does not have these samples, or one tile needs more
+    /// If the specification or the path is invalid, the world does not have these samples, or a single tile needs more
     /// memory than allowed.
     pub fn new(world: &'a World, spec: &BuildSpec, output: &Output) -> Result<Build<'a>> {
         spec.check()?;
@@ -117,7 +116,7 @@ impl<'a> Build<'a> {
         self.block.memory
     }
 
-    /// Maximum disk space, and the number of bytes that exist already.
+    /// Maximum disk space, and the number of bytes that already exist.
     #[must_use]
     pub fn disk(&self) -> (Disk, u64) {
         let there = match JournalState::read(&self.work_dir.journal()) {
@@ -129,7 +128,7 @@ impl<'a> Build<'a> {
         (self.target.disk(), there)
     }
 
-    /// Number of tiles and of samples, including those of overviews and lower zooms.
+    /// Number of tiles and of samples, including tiles and samples of overviews and lower zooms.
     pub fn tiles(&self) -> (usize, u64) {
         let samples = self.stages.iter().map(|stage| stage.len() as u64 * stage.samples as u64).sum();
         (self.stages.iter().map(Stage::len).sum(), samples)
@@ -144,8 +143,8 @@ impl<'a> Build<'a> {
     /// Runs the build.
     ///
     /// # Errors
-    /// If `start` does not allow for an existing result, another build is running there, a file cannot be written, or
-    /// the work is cancelled. After any of these, and after a kill, [`Start::Resume`] continues.
+    /// If `start` does not allow an existing result, another build is running there, a file cannot be written, or the
+    /// work is cancelled. After any of these, and after a kill, [`Start::Resume`] continues.
     pub fn run(&self, start: Start, progress: &Progress) -> Result<Report> {
         let mut held = self.work_dir.hold()?;
         let (state, sound, foreign) = self.begin(start, progress)?;
@@ -167,7 +166,7 @@ impl<'a> Build<'a> {
         progress.check()?;
         for (n, layer) in self.identity.layers.iter().enumerate() {
             if store.range(n).is_none() {
-                // Also if all tiles existed: then nothing was counted in this run.
+                // Also if all tiles existed, because then no samples were counted in this run.
                 FiniteCount { samples: samples.samples.max(1), finite: 0 }.check(&format!("the layer `{layer}`"))?;
             }
         }
@@ -191,7 +190,7 @@ impl<'a> Build<'a> {
         let out = self.work_dir.out().display();
         let taken = self.work_dir.is_taken();
         match (start, state) {
-            // Each message names only what will work.
+            // Each message names only options that will work.
             (Start::Fresh, Some(state)) => match (self.identity.difference(&state.identity), state.finished) {
                 (Some(difference), _) => refuse(format!(
                     "{out} is another build: it was started {difference}; choose another output, or replace it with --force"
@@ -224,11 +223,11 @@ impl<'a> Build<'a> {
         }
     }
 
-    /// Removes the files of the previous build, as described by its journal. Returns files that no build has made,
-    /// which stay.
+    /// Removes the files of the previous build, as described by its journal. Returns files that no build made; they are
+    /// kept.
     fn clear(&self, before: Option<&Identity>, known: bool) -> Result<Vec<PathBuf>> {
         let new = paths(self.target.as_ref());
-        // Without a readable journal, only files that would be written again count as a build's own.
+        // Without a readable journal, only files that would be written again count as files of a build.
         let old = before.and_then(|before| target(self.world, before, Form::named(&before.form)?).ok());
         let old = old.map_or_else(|| new.clone(), |target| paths(target.as_ref()));
         self.work_dir.clear(known, &old, &new)
@@ -243,7 +242,7 @@ impl<'a> Build<'a> {
             let places = if stage.is_some() { self.target.places(*job) } else { Vec::new() };
             let as_many = !places.is_empty() && places.len() == record.digests.len();
             let same = |(place, digest): (&JobFile, &FileDigest)| match (place, &state.finished) {
-                // Temporary files may be gone.
+                // Temporary files may be missing.
                 (JobFile::Scratch(_), Some(_)) => true,
                 _ => digest.is_at(&self.work_dir.path(place)),
             };
@@ -252,7 +251,7 @@ impl<'a> Build<'a> {
         Ok(checked?.into_iter().flatten().collect())
     }
 
-    /// The report, if everything exists and is intact.
+    /// The report, if all files exist and are intact.
     fn is_finished(&self, state: &JournalState, sound: &BTreeSet<Job>) -> Option<Report> {
         let finished = state.finished.as_ref()?;
         let whole = finished.iter().all(|(path, digest)| digest.is_at(&self.work_dir.result(path)));
@@ -267,7 +266,7 @@ impl<'a> Build<'a> {
         })
     }
 
-    /// The jobs to run: those whose part of the result is missing, and missing ones that others need.
+    /// The jobs to run: jobs whose part of the result is missing, and missing jobs that these depend on.
     fn wanted(&self, sound: &BTreeSet<Job>) -> BTreeSet<Job> {
         let mut wanted = BTreeSet::new();
         for (stage, Stage { rows, columns, .. }) in self.stages.iter().enumerate().rev() {
@@ -309,7 +308,7 @@ impl<'a> Build<'a> {
             let tiles = wanted.iter().filter(|job| job.stage == n).map(|job| (job.row, job.column));
             if n == 0 {
                 for group in self.block.groups(&tiles.collect(), *stage) {
-                    // Solving happens with the first group.
+                    // The first group includes the time for solving.
                     let work = std::mem::take(&mut solving) + each * (group.len() * stage.samples) as f64;
                     count = count.and(self.make_group(&group, store, progress, work)?);
                 }
@@ -323,7 +322,7 @@ impl<'a> Build<'a> {
         Ok(count)
     }
 
-    /// Approximate time, in nanoseconds, of solving and of making one sample.
+    /// Approximate time, in nanoseconds, for solving and for making one sample.
     fn work(&self, wanted: &BTreeSet<Job>) -> Result<[f64; 2]> {
         let first = wanted.iter().find(|job| job.stage == 0).map(|job| (job.row, job.column));
         let Some(window) = union(self.target.as_ref(), first.into_iter()) else { return Ok([0.0; 2]) };
@@ -332,7 +331,7 @@ impl<'a> Build<'a> {
         Ok([solving, making / window.len().max(1) as f64])
     }
 
-    /// Computes the samples of adjacent tiles, which is `work`, then makes each tile.
+    /// Computes the samples of adjacent tiles, with progress `work`, then makes each tile.
     fn make_group(
         &self,
         group: &[(usize, usize)],
@@ -401,7 +400,7 @@ impl<'a> Build<'a> {
     }
 }
 
-/// The sum of lengths, which a journal may state as it likes.
+/// The sum of lengths, without overflow: a journal may contain any numbers.
 fn sum(lengths: impl Iterator<Item = u64>) -> u64 {
     lengths.fold(0, u64::saturating_add)
 }

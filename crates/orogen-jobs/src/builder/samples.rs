@@ -1,4 +1,4 @@
-//! Conversion of a tile's samples: padding, range, and bytes for temporary files.
+//! Conversions of a tile's samples: padding, range, and bytes for temporary files.
 
 use std::io;
 
@@ -28,7 +28,7 @@ pub fn changed(store: &OutputStore, place: &JobFile) -> Error {
     Error::new(ErrorKind::File, message)
 }
 
-/// A grid's samples in a square of `side`; positions outside the grid are filled with `beyond`.
+/// A grid's samples in a square of side `side`; positions outside the grid are filled with `beyond`.
 pub fn square(grid: &Grid, side: usize, beyond: f32) -> Vec<f32> {
     let mut out = vec![beyond; side * side];
     for j in 0..grid.height() {
@@ -37,7 +37,7 @@ pub fn square(grid: &Grid, side: usize, beyond: f32) -> Vec<f32> {
     out
 }
 
-/// [`square`] with the grid's edge repeated.
+/// [`square`] with the grid's edge repeated outside.
 pub fn square_repeated(grid: &Grid, side: usize) -> Vec<f32> {
     let mut out = Vec::with_capacity(side * side);
     for j in 0..side {
@@ -48,7 +48,7 @@ pub fn square_repeated(grid: &Grid, side: usize) -> Vec<f32> {
     out
 }
 
-/// The minimum and maximum finite sample; reversed infinities if there is none.
+/// The minimum and maximum finite sample; `[inf, -inf]` if there is none.
 pub fn range(grid: &Grid) -> [f32; 2] {
     extremes(NO_SAMPLES, grid.data())
 }

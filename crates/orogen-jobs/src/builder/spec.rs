@@ -76,7 +76,7 @@ impl Form {
         }
     }
 
-    /// The form for the name of the result and the option `tiles` of [`BuildSpec::OPTIONS`].
+    /// The form that follows from the name of the result and the option `tiles` of [`BuildSpec::OPTIONS`].
     ///
     /// # Errors
     /// If they do not determine it, or contradict each other.
@@ -126,7 +126,7 @@ impl Form {
     }
 
     /// The default side of a tile in samples; `None` if it depends on the window. For tiles that share their edges it
-    /// is a power of two plus one, as engines require.
+    /// is a power of two plus one, as game engines require.
     #[must_use]
     pub fn usual_tile(self) -> Option<usize> {
         match self {
@@ -137,20 +137,20 @@ impl Form {
         }
     }
 
-    /// Whether it is a single file instead of a folder.
+    /// Whether the result is a single file instead of a folder.
     #[must_use]
     pub fn is_file(self) -> bool {
         self == Form::Cog
     }
 
-    /// Whether it can hold several layers.
+    /// Whether the result can hold several layers.
     #[must_use]
     pub fn holds_many(self) -> bool {
         matches!(self, Form::Zarr | Form::Tiles(_))
     }
 }
 
-/// The specification of a build: samples of layers, in a form.
+/// The specification of a build: which samples, and in which form.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 #[must_use]
@@ -193,30 +193,30 @@ const OPTIONS: &[OptionSpec] = &[
     ),
 ];
 
-/// Maximum length of a layer's name that becomes part of a file name.
+/// Maximum length of a layer name that becomes part of a file name.
 const LONGEST_NAME: usize = 100;
 
 impl BuildSpec {
     /// The options, for front ends.
     pub const OPTIONS: &[OptionSpec] = OPTIONS;
 
-    /// The same with the tiles and layers that are chosen by [`OPTIONS`](BuildSpec::OPTIONS).
+    /// Sets the tiles and layers that are chosen by [`OPTIONS`](BuildSpec::OPTIONS).
     pub fn with_options(self, options: &Options) -> BuildSpec {
         let tile = options.whole("tile").map(|side| side as usize);
         BuildSpec { tile, ..self }.with_layers(options.text("layers").unwrap_or(HEIGHT).split(','))
     }
 
-    /// The heights of a window.
+    /// A build of the heights of a window.
     pub fn new(form: Form, window: Window) -> BuildSpec {
         BuildSpec { form, window, tile: None, layers: vec![HEIGHT.into()] }
     }
 
-    /// The same in tiles of this many samples per side.
+    /// Sets the side of a tile, in samples.
     pub fn with_tile(self, tile: usize) -> BuildSpec {
         BuildSpec { tile: Some(tile), ..self }
     }
 
-    /// The same of these layers.
+    /// Sets the layers.
     pub fn with_layers(self, layers: impl IntoIterator<Item = impl Into<String>>) -> BuildSpec {
         BuildSpec { layers: layers.into_iter().map(Into::into).collect(), ..self }
     }
@@ -224,8 +224,8 @@ impl BuildSpec {
     /// Rejects specifications that no form can satisfy.
     ///
     /// # Errors
-    /// If there is no layer, a duplicate, a name that is not valid in file names, or more layers than the form can
-    /// hold.
+    /// If there are no layers, duplicate layers, a name that is not valid in file names, or more layers than the form
+    /// can hold.
     pub fn check(&self) -> Result<()> {
         let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
         if self.layers.is_empty() {

@@ -11,13 +11,13 @@ use orogen_grid::grid::{Grid, Window};
 
 /// A form of result: how it is split into jobs, and how each job is done.
 pub trait BuildTarget: Sync {
-    /// The stages, in order. The jobs of the first one read the world.
+    /// The stages, in order. The jobs of the first stage read the world.
     fn stages(&self) -> Vec<Stage>;
 
     /// The window of a job of the first stage, at the cell of the specification.
     fn window(&self, row: usize, column: usize) -> Window;
 
-    /// The files that a job makes.
+    /// The files that a job writes.
     fn places(&self, job: Job) -> Vec<JobFile>;
 
     /// The jobs of the previous stage whose files a job reads.
@@ -40,10 +40,10 @@ pub trait BuildTarget: Sync {
         Vec::new()
     }
 
-    /// Memory of a job beside its samples, in bytes.
+    /// Memory of a job in addition to its samples, in bytes.
     fn scratch_memory(&self) -> u64;
 
-    /// Maximum disk space: of the result, and of temporary files.
+    /// Maximum disk space of the result and of temporary files.
     fn disk(&self) -> Disk;
 }
 

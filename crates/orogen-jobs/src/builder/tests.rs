@@ -1,4 +1,4 @@
-//! Builds that are interrupted, damaged, repeated and rejected: the result always equals that of an uninterrupted
+//! Builds that are interrupted, damaged, repeated and rejected. The result always equals the result of an uninterrupted
 //! build.
 
 use std::collections::BTreeMap;
@@ -58,7 +58,7 @@ fn world(memory: Option<u64>, threads: usize) -> World {
         .unwrap()
 }
 
-/// Odd sizes, which are no multiples of the tiles and overviews.
+/// Odd sizes, which are not multiples of the tiles and overviews.
 fn spec(form: Form) -> BuildSpec {
     let tile = match form {
         Form::Cog => 32,
@@ -133,7 +133,7 @@ fn the_bytes_depend_neither_on_memory_nor_on_threads() {
         assert!(report.made > 3 && report.kept == 0, "{form:?} {report:?}");
         assert_eq!(report.bytes, expect.values().map(|bytes| bytes.len() as u64).sum::<u64>(), "{form:?}");
         let spec = spec(form);
-        // A limit so small that each tile is made alone.
+        // A memory limit so small that each tile is made alone.
         let folder = Folder::new();
         let fits = |memory: &u64| Build::new(&world(Some(*memory), 1), &spec, &output(&folder.out())).is_ok();
         let smaller = |memory: &u64| Some(memory / 4 * 3);
@@ -196,7 +196,7 @@ fn interrupted_anywhere_it_ends_with_the_same_bytes() {
         let (expect, whole) = undisturbed(form);
         let (world, spec) = (world(None, 2), spec(form));
         let folder = Folder::new();
-        // The disk is full repeatedly, each time a little later.
+        // The disk is full several times, each time a little later.
         let mut kept = 0;
         for files in (0..).step_by(3) {
             let mut build = Build::new(&world, &spec, &output(&folder.out())).unwrap();
@@ -265,7 +265,7 @@ fn what_is_damaged_is_made_again() {
                 2 => fs::write(&path, []).unwrap(),
                 _ => fs::remove_file(&path).unwrap(),
             }
-            // One by one, and all remaining tiles at once.
+            // One by one, then all remaining tiles at once.
             if n < 6 || n + 1 == expect.len() {
                 run(&world, &spec, &folder.out(), Start::Resume);
                 assert!(result(&folder.out()) == expect, "{form:?}: {}", path.display());
@@ -341,7 +341,7 @@ fn what_is_there_is_not_overwritten() {
     );
     let fresh = build(&other, Start::Fresh);
     assert_eq!(fresh.unwrap_err(), "~/out already exists; use --force to replace it");
-    // `--force` does not remove files that no build has made.
+    // `--force` does not remove files that no build made.
     fs::remove_dir_all(folder.out()).unwrap();
     fs::create_dir_all(folder.out()).unwrap();
     fs::write(folder.out().join("diary"), "mine").unwrap();

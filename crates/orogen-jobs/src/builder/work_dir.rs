@@ -11,19 +11,19 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_io::file::{self, Output};
 use orogen_io::fs::{self, File, OpenOptions, TryLockError};
 
-/// File names within the folder beside the result.
+/// File names within the folder of the build.
 const LOCK: &str = "lock";
 const JOURNAL: &str = "journal";
 const SCRATCH: &str = "scratch";
 const TEMPORARY: &str = "temporary";
 
-/// Files at the top of a folder that a completed build has made.
+/// Files at the top of a folder that mark a completed build.
 const MARKS: [&str; 3] = ["zarr.json", "manifest.json", "tiles.json"];
 
 /// Number of files that are synced concurrently.
 const SYNCS: usize = 16;
 
-/// The result and the folder beside it.
+/// The paths of the result and of the folder next to it.
 #[derive(Debug, Clone)]
 pub struct WorkDir {
     /// The output, with its policy for replacing.
@@ -34,12 +34,12 @@ pub struct WorkDir {
     file: bool,
 }
 
-/// The lock of a running build. The system releases it when the process ends, for whatever reason.
+/// The lock of a running build. The operating system releases it when the process ends, for whatever reason.
 #[derive(Debug)]
 pub struct BuildLock {
     _lock: File,
     beside: PathBuf,
-    /// Whether the folder was created for this build.
+    /// Whether the folder was created by this build.
     new: bool,
     /// Whether the folder contains something worth keeping.
     kept: bool,
@@ -103,7 +103,7 @@ impl WorkDir {
         &self.output
     }
 
-    /// The folder beside the result.
+    /// The folder next to the result, with the journal and temporary files.
     pub fn beside(&self) -> &Path {
         &self.beside
     }
@@ -126,12 +126,12 @@ impl WorkDir {
         if path.as_os_str().is_empty() { self.out.clone() } else { self.out.join(path) }
     }
 
-    /// The path of a temporary file, one for each `n`.
+    /// The path of a temporary file; each `n` gives a different path.
     pub fn temporary(&self, n: u64) -> PathBuf {
         self.beside.join(TEMPORARY).join(n.to_string())
     }
 
-    /// Creates the folder beside the result and locks it.
+    /// Creates the folder next to the result and locks it.
     ///
     /// # Errors
     /// If another build is running there, or the folder cannot be written.
@@ -175,7 +175,7 @@ impl WorkDir {
         }
     }
 
-    /// The error for a folder that is not the result of a build; `None` if it is one, or a file.
+    /// The error for a folder that is not the result of a build; `None` if the path is a result or a file.
     pub fn foreign(&self) -> Option<Error> {
         let is_built = self.file || MARKS.iter().any(|mark| fs::is_file(&self.out.join(mark)));
         let message = || {
@@ -187,21 +187,21 @@ impl WorkDir {
         (!is_built).then(|| Error::new(ErrorKind::File, message()))
     }
 
-    /// A file in the folder beside the result that is not a build's.
+    /// A file in the folder next to the result that does not belong to a build.
     fn foreign_beside(&self) -> Option<OsString> {
         let names = fs::read_dir(&self.beside).ok()?.flatten().map(|entry| entry.file_name());
         names.filter(|name| ![LOCK, JOURNAL, SCRATCH, TEMPORARY].iter().any(|own| name == own)).min()
     }
 
-    /// Prepares a new build: removes the files of the previous one, `old` within the result. Returns other files, which
-    /// stay. `known` tells whether there is a journal, so that the result is a build's own; `new` are the files that
-    /// will be written.
+    /// Prepares a new build: removes the files of the previous one, whose paths within the result are `old`. Returns
+    /// other files, which are kept. `known` is true if there is a journal, which proves that the result was made by a
+    /// build; `new` are the files that will be written.
     ///
     /// A single file is not removed; it is replaced by the new one at the end.
     ///
     /// # Errors
-    /// If the existing files were not made by a build, a file that stays conflicts with a new one, or something cannot
-    /// be removed. In the first two cases nothing is removed.
+    /// If the existing files were not made by a build, a file that is kept conflicts with a new one, or something
+    /// cannot be removed. In the first two cases nothing is removed.
     pub fn clear(&self, known: bool, old: &BTreeSet<PathBuf>, new: &BTreeSet<PathBuf>) -> Result<Vec<PathBuf>> {
         let mut foreign = Vec::new();
         if !self.file && self.is_taken() {
@@ -219,10 +219,10 @@ impl WorkDir {
                     self.out.join(path).display()
                 ));
             }
-            // The journal first: a partially removed result must not look resumable.
+            // The journal first, because a partially removed result must not look resumable.
             remove(&self.journal(), |path| fs::remove_file(path))?;
             own.iter().try_for_each(|path| remove(&self.out.join(path), |path| fs::remove_file(path)))?;
-            // The innermost first. Non-empty folders stay, and so do empty folders of others.
+            // The innermost first. Non-empty folders and empty folders that no build made are kept.
             let held: BTreeSet<&Path> = own.iter().flat_map(|path| path.ancestors().skip(1)).collect();
             let emptied = folders.iter().rev().filter(|folder| held.contains(folder.as_path()));
             emptied.for_each(|folder| drop(fs::remove_dir(self.out.join(folder))));
@@ -233,7 +233,7 @@ impl WorkDir {
         Ok(foreign)
     }
 
-    /// The files and folders of a result that is a folder, by their paths within it. Links count as files.
+    /// The files and folders within a result that is a folder, by their paths within it. Links count as files.
     fn contents(&self) -> Result<(Vec<PathBuf>, BTreeSet<PathBuf>)> {
         let (mut files, mut folders, mut left) = (Vec::new(), BTreeSet::new(), vec![PathBuf::new()]);
         while let Some(within) = left.pop() {
@@ -258,7 +258,7 @@ impl WorkDir {
     /// Removes temporary files of a completed build.
     ///
     /// # Errors
-    /// If it cannot be removed.
+    /// If they cannot be removed.
     pub fn sweep(&self) -> Result<()> {
         remove(&self.beside.join(SCRATCH), |path| fs::remove_dir_all(path))?;
         self.tidy()
@@ -275,7 +275,7 @@ impl WorkDir {
     /// Creates the folders for files.
     ///
     /// # Errors
-    /// If they cannot be made.
+    /// If they cannot be created.
     pub fn furnish(&self) -> Result<()> {
         let make = |path: &Path| fs::create_dir_all(path).map_err(|cause| Error::file("make the folder", path, &cause));
         make(&self.beside.join(TEMPORARY))?;
@@ -292,7 +292,7 @@ impl WorkDir {
             let synced = File::open(&real).and_then(|file| file.sync_all());
             synced.map_err(|cause| Error::file("write", &real, &cause))
         };
-        // Waiting for a disk takes no processor time, and file systems answer concurrent requests together.
+        // Waiting for a disk takes no CPU time, and file systems handle concurrent requests together.
         let next = AtomicUsize::new(0);
         let work = || {
             while let Some(path) = paths.get(next.fetch_add(1, Ordering::Relaxed)) {

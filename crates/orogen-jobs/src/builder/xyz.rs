@@ -3,13 +3,15 @@
 //! **Position.** Web Mercator. Pixels are areas, and samples are at their centers. Tiles are those of the whole map, so
 //! that windows of one world fit together; the part of a tile outside the window repeats its edge.
 //!
-//! - A world in EPSG:3857 is at its place, in the tiles of all web maps. Pixels between its samples are interpolated,
-//!   with samples beyond the window where the world has any, so that adjacent windows have the pixels of one.
+//! - A world in EPSG:3857 is at its real position, in the tiles of all web maps. Pixels between its samples are
+//!   interpolated, also from samples beyond the window where the world has any, so that adjacent windows together have
+//!   the same pixels as one large window.
 //! - Any other world has its origin at 0 degrees east and north. Near the equator Mercator is true to scale: one metre
 //!   of the world is one metre of the map if the cell equals a pixel of some zoom (see [`cell_near`]); otherwise the
 //!   map is scaled by a factor that TileJSON states.
 //!
-//! **Lower zooms.** Each pixel is the mean of the four below it in full precision, rounded once when it is written.
+//! **Lower zooms.** Each pixel is the mean of the four pixels below it in full precision, rounded once when it is
+//! written.
 
 use std::path::PathBuf;
 
@@ -40,7 +42,7 @@ const EQUATOR: f64 = 2.0 * std::f64::consts::PI * 6_378_137.0;
 /// The highest zoom, with tiles of a few metres.
 const DEEPEST: f64 = 24.0;
 
-/// The zoom whose pixels are closest to `cell` metres, for tiles of `tile` pixels.
+/// The zoom whose pixels are closest in size to `cell` metres, for tiles of `tile` pixels.
 fn zoom_near(cell: f64, tile: usize) -> u32 {
     libm::log2(EQUATOR / (tile as f64 * cell)).round().clamp(0.0, DEEPEST) as u32
 }
@@ -49,7 +51,7 @@ fn pixel(zoom: u32, tile: usize) -> f64 {
     EQUATOR / (tile as f64 * f64::from(1 << zoom))
 }
 
-/// The cell closest to `cell` with which the map is true to scale: that of a zoom's pixels.
+/// The cell closest to `cell` at which the map is true to scale: the pixel size of a zoom.
 #[must_use]
 pub fn cell_near(cell: f64, tile: usize, map: Option<&Georeference>) -> f64 {
     let unit = web_map(map).map_or(1.0, |map| map.per_metre[0]);
@@ -64,10 +66,10 @@ fn web_map(map: Option<&Georeference>) -> Option<&Georeference> {
 /// The EPSG code of Web Mercator.
 const WEB_MERCATOR: u16 = 3857;
 
-/// The largest distance of a pixel from a sample at which it is that sample, in cells.
+/// Maximum distance of a pixel from a sample, in cells, at which the two count as the same.
 const SAME: f64 = 1e-3;
 
-/// Samples around a position that the interpolation reads.
+/// Number of samples around a position that the interpolation reads on each side.
 const AROUND: usize = 2;
 
 /// The samples at the pixels of an axis: pixel k is at sample `first + k * step`.
@@ -87,15 +89,15 @@ impl Axis {
         self.step == 1.0 && self.first == self.first.floor()
     }
 
-    /// The first and last of `most` pixels whose middles are in the cells of `count` samples from sample `from` on,
-    /// without the last edge.
+    /// The first and last of `most` pixels whose centers are in the cells of `count` samples, starting at sample
+    /// `from`. The last edge is excluded.
     fn pixels(&self, from: i64, count: usize, most: u64) -> Option<[u64; 2]> {
         let first = |edge: f64| ((edge - 0.5 - self.first) / self.step).ceil();
         let (first, end) = (first(from as f64), first(from as f64 + count as f64));
         (first >= 0.0 && end <= most as f64 && end > first).then_some([first as u64, end as u64 - 1])
     }
 
-    /// The same with whole samples, if those of all pixels from `from` on are as near.
+    /// Rounds to whole samples, if the pixels of `count` samples starting at `from` are all within [`SAME`] of them.
     fn rounded(self, from: i64, count: usize) -> Axis {
         let pixel = ((from as f64 - self.first) / self.step).round();
         let shift = (self.first + pixel * self.step).round() - pixel;
@@ -116,7 +118,7 @@ pub struct Tree {
     axes: [Axis; 2],
     /// The window's first and last pixel on the whole map, across and down.
     pixels: [[u64; 2]; 2],
-    /// The window with the samples around it that may be read.
+    /// The window and the samples around it that may be read.
     reach: Window,
     /// How samples are interpolated.
     kind: LayerKind,
@@ -124,7 +126,7 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// The target of a build.
+    /// Creates the target of a build.
     ///
     /// # Errors
     /// If tiles do not have 256 or 512 pixels, or the window is outside the map.
@@ -141,7 +143,7 @@ impl Tree {
             None => [Axis { first: -(most as f64 / 2.0), step: 1.0 }; 2],
             Some(Georeference { origin: [east, north], per_metre, .. }) => {
                 let (pixel, [across, down]) = (pixel(zoom, tile), per_metre.map(|unit| unit * window.cell));
-                // The middle of the first pixel is half a pixel within the map.
+                // The center of the first pixel is half a pixel within the map.
                 let corner = 0.5 * (pixel - EQUATOR);
                 let x = Axis { first: (corner - east) / across, step: pixel / across };
                 let y = Axis { first: (corner + north) / down, step: pixel / down };
@@ -210,8 +212,8 @@ impl Tree {
         JobFile::Scratch(format!("half/{zoom}/{column}/{row}").into())
     }
 
-    /// The positions, in samples, of the pixels of a tile of the highest zoom along an axis. Those outside the window
-    /// are at its edge.
+    /// The positions, in samples, of the pixels of a tile of the highest zoom along an axis. Pixels outside the window
+    /// are moved to its edge.
     fn positions(&self, axis: usize, tile: u64) -> impl Iterator<Item = f64> {
         let (side, [first, last]) = (self.tile() as u64, self.pixels[axis]);
         (tile * side..(tile + 1) * side).map(move |pixel| self.axes[axis].at(pixel.clamp(first, last)))
@@ -222,7 +224,7 @@ impl Tree {
         self.axes.iter().all(Axis::is_exact)
     }
 
-    /// The samples that a tile of the highest zoom is made of.
+    /// The window of samples from which a tile of the highest zoom is made.
     fn inside(&self, row: usize, column: usize) -> Window {
         let (_, column, row) = self.address(Job { stage: 0, row, column });
         let span = |axis: usize, tile: u64| {
@@ -236,7 +238,7 @@ impl Tree {
         if self.is_exact() { window } else { window.grown(AROUND).intersection(&self.reach) }
     }
 
-    /// The samples of a tile of the highest zoom.
+    /// The pixels of a tile of the highest zoom.
     fn full(&self, job: Job, grid: &Grid) -> Vec<f32> {
         let (_, column, row) = self.address(job);
         let (columns, rows) = (self.positions(0, column), self.positions(1, row));
@@ -253,7 +255,8 @@ impl Tree {
         out
     }
 
-    /// The samples of a tile derived from those below it; where there is none, the edge of its neighbor is repeated.
+    /// The pixels of a tile derived from the tiles below it; where one is missing, the edge of its neighbor is
+    /// repeated.
     fn gathered(&self, job: Job, store: &OutputStore) -> Result<Vec<f32>> {
         let (tile, half) = (self.tile(), self.tile() / 2);
         let mut quarters: [[Option<Vec<f32>>; 2]; 2] = Default::default();
@@ -384,7 +387,7 @@ impl BuildTarget for Tree {
     }
 
     fn scratch_memory(&self) -> u64 {
-        // Its samples, three bytes each, compressed, and half the samples.
+        // The pixels, their encoding in three bytes each, the compressed tile, and half the pixels.
         16 * (self.tile() * self.tile()) as u64
     }
 

@@ -21,7 +21,7 @@ use orogen_io::samples::to_bytes;
 /// Maximum number of coordinates per chunk.
 const COORDINATES: usize = 1 << 16;
 
-/// Maximum side of a chunk: with larger ones readers run out of memory.
+/// Maximum side of a chunk; with larger chunks readers run out of memory.
 const LARGEST: usize = 8192;
 
 /// The group.
@@ -32,10 +32,10 @@ pub struct Zarr {
 }
 
 impl Zarr {
-    /// The target of a build.
+    /// Creates the target of a build.
     ///
     /// # Errors
-    /// If a chunk cannot have such a side.
+    /// If a chunk cannot have this side.
     pub fn new(identity: &Identity, about: &str) -> Result<Zarr> {
         if !(1..=LARGEST).contains(&identity.tile) {
             let message =
@@ -57,7 +57,7 @@ impl Zarr {
         if !unit.is_empty() {
             attributes["units"] = json!(unit);
         }
-        // The attributes that GDAL reads, and those of xarray's extensions.
+        // The attributes that GDAL reads, and those that xarray's extensions read.
         if let Some(map) = &self.identity.map {
             if let Some(code) = map.epsg() {
                 attributes["_CRS"] = json!({ "url": format!("http://www.opengis.net/def/crs/EPSG/0/{code}") });
@@ -171,7 +171,7 @@ impl BuildTarget for Zarr {
             "recipe_sha256": self.identity.recipe,
             "cell": self.identity.window.cell,
         });
-        // Last: without this file there is no group, so a partial group does not exist.
+        // Written last: without this file there is no group, so a partial group does not exist.
         put("zarr.json".into(), format!("{:#}\n", metadata::group(&arrays, attributes)).as_bytes())?;
         Ok(written)
     }
@@ -188,7 +188,7 @@ impl BuildTarget for Zarr {
     }
 
     fn scratch_memory(&self) -> u64 {
-        // Padded, as bytes, shuffled, compressed.
+        // The padded chunk, its bytes, the shuffled bytes, and the compressed ones.
         16 * (self.identity.tile * self.identity.tile) as u64
     }
 

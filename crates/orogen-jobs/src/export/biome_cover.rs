@@ -23,15 +23,16 @@ pub fn memory(window: &Window) -> u64 {
     (window.width as u64).saturating_mul(window.height as u64).saturating_mul(20)
 }
 
-/// The output that is the layer of a `biome`, and the names and colors of its classes in the order of their codes;
-/// `None` if the recipe has no such output.
+/// The output that contains biome codes, and the names and colors of its classes in the order of their codes; `None` if
+/// the recipe has no such output.
 #[must_use]
 pub fn classes(recipe: &Recipe) -> Option<(&str, Vec<(&'static str, Rgb)>)> {
     let (output, scheme) = biomes(recipe)?;
     Some((output, scheme.classes().iter().map(|class| (class.name, class.color)).collect()))
 }
 
-/// The colors of the biomes over the window of these heights, and the most frequent ones on land, in this order.
+/// The colors of the biomes over the window of these heights, with the most frequent biomes on land for the legend, in
+/// this order.
 ///
 /// Fails if the world fails, or no output of the recipe is the layer of a `biome`.
 pub fn of(world: &World, heights: &Grid, sea_level: Option<f64>, progress: &Progress) -> io::Result<SurfaceCover> {
@@ -44,7 +45,7 @@ pub fn of(world: &World, heights: &Grid, sea_level: Option<f64>, progress: &Prog
     cover(world, output, &classes, Some(usize::from(WATER)), (heights, sea_level), progress)
 }
 
-/// The same for the terrain classes of the recipe's tables `[[class]]`.
+/// Like [`of`], for the terrain classes of the recipe's tables `[[class]]`.
 ///
 /// Fails if the world fails, or the recipe has no such tables.
 pub fn of_terrain(
@@ -62,7 +63,7 @@ pub fn of_terrain(
     cover(world, CLASS, &classes, None, (heights, sea_level), progress)
 }
 
-/// The colors of the classes in an output of codes. The legend has those on land, without `water`.
+/// The colors of the classes in an output of codes. The legend lists the classes on land, without `water`.
 fn cover(
     world: &World,
     output: &str,

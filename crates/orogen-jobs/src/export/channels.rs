@@ -27,13 +27,14 @@ pub const WEIGHTS: OptionSpec = OptionSpec::new("weights", "HOW", ValueKind::Wor
              each (NAME_grass.png, ...) [default: rgba]",
 );
 
-/// The option for a picture beside weights.
+/// The option for a picture of the surfaces in addition to the weights.
 pub const PREVIEW: OptionSpec = OptionSpec::switch("preview").with_about(
     "Write a picture of a splat map beside it: the surfaces in their colors with relief shading \
              (NAME_preview.png)",
 );
 
-/// Writes normals as red (east), green (north, or south for DirectX) and blue (up); -1 to 1 becomes 0 to 255 or 65535.
+/// Writes normals as red (east), green (north, or south for DirectX) and blue (up); -1 to 1 is mapped to 0 to 255 or
+/// 65535.
 ///
 /// Fails if the source or the files fail.
 pub fn write_normals(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {

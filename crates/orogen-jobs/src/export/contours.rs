@@ -17,13 +17,14 @@ const MOST: usize = 25;
 
 /// Contour lines, and their interval if there is one.
 pub struct Contours {
-    /// In the order of [`trace::contours`].
+    /// The lines, in the order of [`trace::contours`].
     pub lines: Vec<Line>,
     /// Distance between levels, in metres.
     pub interval: Option<f64>,
 }
 
-/// Memory beside the rows, in bytes: the grid, and crossings, of which rough ground has about as many as samples.
+/// Memory in addition to the rows, in bytes: the grid, and crossings. Rough ground has about as many crossings as
+/// samples.
 pub fn memory(window: &Window, _: &Options) -> u64 {
     whole(window).saturating_mul(8)
 }

@@ -1,4 +1,4 @@
-//! The output of an export: a file and its sidecars, written together or not at all, or a stream.
+//! The output of an export: either a file with its sidecars, written all or none, or a stream.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ enum Sink<'a> {
 }
 
 impl<'a> Files<'a> {
-    /// A file at `output` and its sidecars. Cancellation of `progress` stops the writing.
+    /// A file at `output`, and its sidecars. Writing stops when `progress` is cancelled.
     pub fn at(output: &'a Output, progress: &Progress) -> Files<'a> {
         Files { sink: Sink::File(output), progress: progress.clone(), staged: Vec::new() }
     }
@@ -67,8 +67,8 @@ impl<'a> Files<'a> {
         }
     }
 
-    /// Writes a sidecar; `name` makes its path from the main file's path. Nothing is written for a stream, a pipe or a
-    /// device.
+    /// Writes a sidecar; `name` derives its path from the main file's path. Nothing is written for a stream, a pipe or
+    /// a device.
     pub fn write_beside(
         &mut self,
         name: impl FnOnce(&Path) -> PathBuf,

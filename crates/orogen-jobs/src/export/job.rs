@@ -1,4 +1,4 @@
-//! An export as one job: what is exported, how, and where to.
+//! An export as one job: what to export, in which format, and where to.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -38,7 +38,7 @@ pub struct ExportJob {
 }
 
 impl ExportJob {
-    /// The heights of the whole world, without options.
+    /// An export of the heights of the whole world, without options.
     pub fn new(format: &'static Format) -> ExportJob {
         ExportJob {
             format,
@@ -49,41 +49,41 @@ impl ExportJob {
         }
     }
 
-    /// The same for this layer.
+    /// Sets the layer.
     pub fn with_layer(self, layer: impl Into<String>) -> ExportJob {
         ExportJob { layer: layer.into(), ..self }
     }
 
-    /// The same over this window.
+    /// Sets the window.
     pub fn with_window(self, window: Window) -> ExportJob {
         ExportJob { window: Some(window), ..self }
     }
 
-    /// The same with these options of the format.
+    /// Sets the options of the format.
     pub fn with_options(self, options: Options) -> ExportJob {
         ExportJob { options, ..self }
     }
 
-    /// The same with these options of the derived layer.
+    /// Sets the options of the derived layer.
     pub fn with_layer_options(self, layer_options: Options) -> ExportJob {
         ExportJob { layer_options, ..self }
     }
 
-    /// Checks that the format has all options that are given for it.
+    /// Checks that the format has all given options.
     ///
     /// # Errors
-    /// If it has not: the message names the formats that do.
+    /// If it does not have one of them: the message names the formats that do.
     pub fn check(&self) -> Result<()> {
         registry::check(self.format, &self.options)
     }
 
-    /// The files that its options name, which are read.
+    /// The files that the options name as inputs.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         self.options.files().chain(self.layer_options.files())
     }
 
-    /// Appends to a recipe the nodes that the job needs; call it before the world is opened. Layers of the recipe need
-    /// none.
+    /// Appends to a recipe the nodes that the job needs; call it before the world is opened. Layers of the recipe
+    /// itself need none.
     ///
     /// # Errors
     /// The errors of [`check`](ExportJob::check) and of [`list::prepare`].
@@ -102,7 +102,7 @@ impl ExportJob {
     ///
     /// # Errors
     /// If the world has no such layer or cannot make the window, the format does not have an option or cannot hold the
-    /// layer, no sample is finite, memory does not suffice (then nothing was started), the work was cancelled, or a
+    /// layer, no sample is finite, memory does not suffice (then no work was started), the work was cancelled, or a
     /// file cannot be written.
     pub fn to_file(&self, world: &World, output: &Output, progress: &Progress) -> Result<Written> {
         run::to_file(self.format, self.source(world, progress)?, &self.options, output)
@@ -116,7 +116,7 @@ impl ExportJob {
         run::to_stream(self.format, self.source(world, progress)?, &self.options, out)
     }
 
-    /// What is exported.
+    /// The source of the export.
     fn source<'w>(&self, world: &'w World, progress: &Progress) -> Result<LayerSource<'w>> {
         let window = match self.window {
             Some(window) => window,

@@ -19,7 +19,7 @@ use orogen_io::format::dem::Georeference;
 use orogen_io::format::levels::{Levels, NO_SAMPLES, extremes};
 
 /// Bands of rows from the north, each with a grid per channel and a count of finite samples (for some derived layers,
-/// of the heights under them).
+/// of finite heights instead).
 type Source<'w> = Box<dyn Iterator<Item = Result<(Vec<Grid>, FiniteCount)>> + 'w>;
 
 /// A layer of a world over a window.
@@ -28,11 +28,11 @@ pub struct LayerSource<'w> {
     layer: String,
     /// The channels of a derived layer, if the recipe has no layer with this name.
     derived: Option<&'static Channels>,
-    /// Layers of vector features in place of samples.
+    /// Layers of vector features, which replace samples.
     vectors: Vec<&'static VectorLayer>,
     window: Window,
     progress: Progress,
-    /// Memory held beside the current rows, in bytes.
+    /// Memory reserved in addition to the current rows, in bytes.
     reserved: u64,
     /// The iterator over the rows, once it is prepared.
     ready: Option<Source<'w>>,
@@ -43,8 +43,8 @@ pub struct LayerSource<'w> {
 }
 
 impl<'w> LayerSource<'w> {
-    /// A layer over a window: one of the recipe's, or one [derived](super::derived) from its heights (they need a
-    /// [prepared](super::derived::list::prepare) recipe). `progress` counts samples, and can cancel the work.
+    /// A layer over a window: a layer of the recipe, or a layer [derived](super::derived) from its heights, which needs
+    /// a [prepared](super::derived::list::prepare) recipe. `progress` counts samples, and can cancel the work.
     ///
     /// # Errors
     /// If there is no such layer, or the window is not valid for this world.
@@ -55,7 +55,7 @@ impl<'w> LayerSource<'w> {
             Err(error) => match list::named(layer) {
                 Some(derived) => match &derived.made {
                     Made::Channels(channels) => Some(channels),
-                    // Its nodes must be appended before a world is opened.
+                    // The nodes of the layer must be appended before a world is opened.
                     Made::Nodes(_) => return Err(error),
                 },
                 None => {
@@ -63,7 +63,7 @@ impl<'w> LayerSource<'w> {
                         .chain(vector_list::all().iter().map(|layer| layer.name))
                         .collect();
                     let hint = match nearest(layer, names.iter().copied()) {
-                        // The recipe has it, and the error names it.
+                        // The recipe has this layer, and the error names it.
                         Some(near) if world.unit(near).is_ok() => return Err(error),
                         Some(near) => format!("did you mean `{near}`, which is derived from the heights?"),
                         None => format!("layers derived from the heights: {}", names.join(", ")),
@@ -90,7 +90,7 @@ impl<'w> LayerSource<'w> {
         })
     }
 
-    /// Layers of vector features over a window, in place of samples.
+    /// Layers of vector features over a window; they replace samples.
     ///
     /// # Errors
     /// The errors of [`LayerSource::new`] for the heights.
@@ -106,7 +106,7 @@ impl<'w> LayerSource<'w> {
         Ok(source)
     }
 
-    /// Sets the count of samples that features were made of, if they do not come as rows.
+    /// Sets the count of the samples from which features were made, if they were not read as rows.
     pub(super) fn made_of(&mut self, count: FiniteCount) {
         self.count = count;
     }
@@ -179,7 +179,7 @@ impl<'w> LayerSource<'w> {
         self.world.kind(&self.layer).unwrap_or(LayerKind::Height)
     }
 
-    /// A hash of everything that the layer depends on; for a derived layer with channels, of its heights.
+    /// A hash of everything that the layer depends on; for a derived layer with channels, the hash of its heights.
     #[must_use]
     pub fn key(&self) -> [u8; 32] {
         let layer = if self.derived.is_some() { HEIGHT } else { &self.layer };
@@ -263,9 +263,9 @@ impl<'w> LayerSource<'w> {
         self.count
     }
 
-    /// The first channel, all rows at once, and in `halo` the samples around it, as far as the world extends. Values
-    /// that depend on neighbors are then the same in adjacent windows. A format that uses this counts it like
-    /// [`whole`](LayerSource::whole).
+    /// The first channel, all rows at once; `halo` receives the samples around it, as far as the world extends. Values
+    /// that depend on neighbors are then the same in adjacent windows. A format that uses this includes it in its
+    /// memory, like [`whole`](LayerSource::whole).
     ///
     /// Fails if the world fails.
     pub fn surrounded(&mut self, halo: &mut Halo) -> io::Result<Grid> {
@@ -282,14 +282,14 @@ impl<'w> LayerSource<'w> {
             grid.paste(&band);
             halo.take(&window, &band);
         }
-        // A count of heights here includes those around the window.
+        // A count of heights would include those around the window.
         let counts_own = self.derived.is_none() && list::counted(self.world.recipe(), &self.layer) == self.layer;
         self.count = if counts_own { FiniteCount::of(grid.data()) } else { count };
         self.range = extremes(NO_SAMPLES, grid.data());
         Ok(grid)
     }
 
-    /// The range of the samples that were last computed; flat if there were none.
+    /// The range of the samples that were last computed; empty range if there were none.
     #[must_use]
     pub fn levels(&self) -> Levels {
         Levels::new(self.range[0], self.range[1])

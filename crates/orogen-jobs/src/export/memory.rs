@@ -1,9 +1,9 @@
-//! Memory of formats beside the current rows.
+//! Memory of formats in addition to the current rows.
 
 use orogen_grid::grid::Window;
 use orogen_io::spool;
 
-/// Bytes of all samples of a window, for a format that needs them at once.
+/// Memory of all samples of a window, in bytes, for a format that needs them at once.
 pub fn whole(window: &Window) -> u64 {
     (window.width as u64).saturating_mul(window.height as u64).saturating_mul(4)
 }

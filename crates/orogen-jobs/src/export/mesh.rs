@@ -53,8 +53,8 @@ const LATTICE: f64 = 3.0;
 const PAINTING: f64 = 60.0;
 const WRITING: f64 = 60.0;
 
-/// Memory of a mesh of a window, in bytes, beside that of writing the file: the heights and, for an adaptive mesh, its
-/// triangles and the triangulations in progress, if one sample in five becomes a vertex.
+/// Memory of a mesh of a window, in bytes, in addition to the memory for writing the file: the heights and, for an
+/// adaptive mesh, its triangles and the triangulations in progress, if one sample in five becomes a vertex.
 #[must_use]
 pub fn memory(window: &Window, options: &Options) -> u64 {
     let samples = whole(window);
@@ -67,13 +67,13 @@ pub fn memory(window: &Window, options: &Options) -> u64 {
     }
 }
 
-/// A grid and the meshes made of it.
+/// A grid and the meshes made from it.
 pub struct Prepared {
     /// The heights, remapped by the height curve if there is one.
     pub grid: Grid,
     /// Levels of detail, the finest first.
     pub shapes: Vec<Shape>,
-    /// The painter of its vertices or its texture.
+    /// The painter of the vertices or the texture.
     pub painter: Painter,
     halo: Halo,
     exaggeration: f32,
@@ -88,8 +88,8 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// The source's samples, and `levels` shapes over them: every second, fourth ... sample, or twice, four times ...
-    /// the error.
+    /// The source's samples with `levels` meshes: each further level uses every second, fourth ... sample, or two
+    /// times, four times ... the error.
     ///
     /// Fails if the source fails, or the window is too small for a mesh.
     pub fn new(source: &mut LayerSource, options: &Options, levels: usize) -> io::Result<Prepared> {
@@ -101,7 +101,7 @@ impl Prepared {
         progress.expect(samples * (PAINTING + levels as f64 * (shaping + writing)));
         let mut halo = Halo::default();
         let mut grid = source.surrounded(&mut halo)?;
-        // The viewer lights the mesh, so the map's shading is omitted.
+        // Viewers light the mesh, so the map's shading is omitted.
         let painter = Painter::new(mesh_tint::of(source, options)?, Shade::new(0.0));
         let range = extremes(NO_SAMPLES, grid.data());
         if let Some(curve) = &curve {
@@ -139,7 +139,7 @@ impl Prepared {
         }
     }
 
-    /// The factor of heights.
+    /// The factor that heights are multiplied by.
     #[must_use]
     pub fn exaggeration(&self) -> f32 {
         self.exaggeration
@@ -151,7 +151,7 @@ impl Prepared {
         self.max_error
     }
 
-    /// Remaps heights like those of the mesh.
+    /// Remaps heights by the height curve of the mesh.
     pub fn bend(&self, heights: &mut [f32]) {
         if let Some((curve, range)) = &self.curve {
             curve.bend_within(*range, heights);
@@ -223,7 +223,7 @@ impl Prepared {
     }
 }
 
-/// The coloring of a mesh: the requested one, otherwise `otherwise`. A stream has no texture file beside it.
+/// The coloring of a mesh: the requested one, or `otherwise` by default. A stream has no separate texture file.
 #[must_use]
 pub fn color(options: &Options, otherwise: &'static str, files: &Files, beside: bool) -> &'static str {
     match options.word(COLOR.name).unwrap_or(otherwise) {

@@ -33,7 +33,7 @@ pub fn prepare(recipe: &mut Recipe, options: &Options) {
     }
 }
 
-/// Memory of the textures beside the mesh, in bytes.
+/// Memory of the textures in addition to the mesh, in bytes.
 #[must_use]
 pub fn memory(window: &Window, options: &Options) -> u64 {
     let samples = (window.width as u64).saturating_mul(window.height as u64);
@@ -51,9 +51,9 @@ pub struct Pictures {
     pub material: Vec<u8>,
 }
 
-/// The pictures, if the options request them; those of glTF's material only if `packed`.
+/// The pictures, if the options request them; the picture for glTF's material is only made if `packed`.
 ///
-/// Fails if the source fails, if the recipe was not [prepared](prepare), or if `--color` contradicts.
+/// Fails if the source fails, if the recipe was not [prepared](prepare), or if `--color` contradicts them.
 pub fn of(source: &LayerSource, options: &Options, packed: bool) -> io::Result<Option<Pictures>> {
     if !options.has(SURFACES.name) {
         return Ok(None);
@@ -118,7 +118,7 @@ fn open(source: &LayerSource) -> io::Result<Grid> {
     Ok(all)
 }
 
-/// A picture whose rows `fill` computes.
+/// A picture as PNG whose rows are computed by `fill`.
 fn packed_rows(picture: &Picture, fill: impl Fn(usize, &mut [u8]) + Sync) -> io::Result<Vec<u8>> {
     let mut out = Vec::new();
     png::write_through(&mut out, picture, |out: &mut dyn Write| {

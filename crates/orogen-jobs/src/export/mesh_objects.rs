@@ -25,7 +25,7 @@ const OBJECT_MEMORY: u64 = 160;
 /// Width of a placeholder, as a share of the spacing of its kind.
 const WIDTH: f64 = 0.4;
 
-/// Linear red, green and blue of the kinds, in turn.
+/// Linear red, green and blue of the kinds, used in turn.
 const COLORS: [[f32; 3]; 6] = [
     [0.03, 0.11, 0.03],
     [0.22, 0.20, 0.18],
@@ -37,7 +37,7 @@ const COLORS: [[f32; 3]; 6] = [
 
 /// The objects on a mesh, if requested, each at the height of the mesh.
 ///
-/// Fails if the source fails, or the mesh is not made of heights.
+/// Fails if the source fails, or the mesh is not made from heights.
 pub fn of(source: &LayerSource, mesh: &Prepared, options: &Options) -> io::Result<Vec<ObjectMesh>> {
     if !options.has(OBJECTS.name) {
         return Ok(Vec::new());
@@ -55,8 +55,8 @@ pub fn of(source: &LayerSource, mesh: &Prepared, options: &Options) -> io::Resul
     })
 }
 
-/// The objects within the samples of a source's window, each at a height if that is finite. Entries with the same name
-/// are one kind.
+/// The objects within the samples of a source's window, omitted where `height` is not finite. Entries with the same
+/// name are one kind.
 ///
 /// Fails if the world has no objects, or memory does not suffice.
 pub fn kinds(source: &LayerSource, height: impl Fn(&Object) -> f32) -> io::Result<Vec<ObjectMesh>> {

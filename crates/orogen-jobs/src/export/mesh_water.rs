@@ -23,11 +23,11 @@ const RIVERS: [f32; 4] = [0.045, 0.16, 0.27, 0.85];
 const LAKES: [f32; 4] = [0.03, 0.13, 0.24, 0.75];
 const SEA: [f32; 4] = [0.015, 0.08, 0.18, 0.75];
 
-/// Height of ribbons above the ground where the ground is higher than the river, as a share of the cell: enough to
-/// avoid z-fighting.
+/// Height of ribbons above the ground where the ground is higher than the river, relative to the cell: enough to avoid
+/// z-fighting.
 const LIFT: f64 = 0.01;
 
-/// Memory of the water of a window beside the mesh, in bytes.
+/// Memory of the water of a window in addition to the mesh, in bytes.
 pub fn memory(window: &Window, options: &Options) -> u64 {
     match options.has(WATER.name) {
         true => (window.width as u64).saturating_mul(window.height as u64).saturating_mul(MEMORY),
@@ -37,7 +37,7 @@ pub fn memory(window: &Window, options: &Options) -> u64 {
 
 /// The water on a mesh, if requested: rivers, lakes and sea, as far as they exist.
 ///
-/// Fails if the source fails, or the mesh is not made of heights.
+/// Fails if the source fails, or the mesh is not made from heights.
 pub fn of(source: &LayerSource, mesh: &Prepared, options: &Options, reserved: u64) -> io::Result<Vec<WaterMesh>> {
     if !options.has(WATER.name) {
         return Ok(Vec::new());

@@ -2,8 +2,8 @@
 //!
 //! A [`format::Format`] declares its name, extensions, options and memory, and a function that writes it from a
 //! [`layer_source::LayerSource`]: a layer over a window, in bands of rows from the north, or as a whole. Output goes
-//! through `Files`, which puts all files of an export in place at the end, or none. [`registry`] lists the
-//! formats, and a [`job::ExportJob`] exports; a [`targets::job::EngineJob`] exports for an engine.
+//! through `Files`, which puts either all files of an export in place at the end, or none. [`registry`] lists the
+//! formats, and a [`job::ExportJob`] exports; a [`targets::job::EngineJob`] exports for a game engine.
 //!
 //! ```
 //! use orogen_io::file::OutputPolicy;

@@ -1,4 +1,4 @@
-//! Georeferencing beside formats without their own: a world file and a `.prj`, and an `.aux.xml` for pictures that GDAL
+//! Georeferencing for formats that cannot store it: a world file and a `.prj`, and an `.aux.xml` for pictures that GDAL
 //! opens.
 
 use std::io;
@@ -15,7 +15,7 @@ use orogen_io::format::dem::Georeference;
 use orogen_io::format::{aux_xml, world_file};
 use orogen_io::{fs, open};
 
-/// Larger than any georeferencing file, in bytes.
+/// Upper limit for the size of a georeferencing file, in bytes.
 const LONGEST: u64 = 1 << 20;
 
 /// Writes both sidecars, or only the `.prj` if the format stores coordinates itself (`from_south` is `None`). Returns
@@ -95,8 +95,8 @@ pub fn write_for(
     })
 }
 
-/// A world file and a `.prj` apply to every file NAME, whatever its extension, including existing ones that are not
-/// written now.
+/// Checks a sidecar. A world file and a `.prj` apply to every file NAME, whatever its extension, including existing
+/// files that are not written now.
 ///
 /// Fails if one exists with another position than the new one.
 fn check(path: &Path, beside: &Path, bytes: &[u8]) -> Result<()> {
@@ -131,16 +131,16 @@ pub fn stage(output: &Output, map: &Georeference, affine: Affine) -> Result<Vec<
 
 /// A sidecar with the georeferencing of a file.
 struct Companion {
-    /// Its path.
+    /// The path.
     path: PathBuf,
-    /// Its content.
+    /// The content.
     bytes: Vec<u8>,
     /// Whether it applies to every file with that name, whatever the extension.
     shared: bool,
 }
 
 /// The sidecars of a raster: a world file if its format does not store `affine`, a `.prj`, and GDAL's sidecar for
-/// pictures that GDAL opens. Also the reason if the coordinate system cannot be expressed.
+/// pictures that GDAL opens. Also returns the reason if the coordinate system cannot be expressed.
 ///
 /// Never fails, because it writes to memory.
 fn companions(path: &Path, map: &Georeference, affine: Option<Affine>) -> io::Result<(Vec<Companion>, Option<String>)> {
@@ -154,7 +154,7 @@ fn companions(path: &Path, map: &Georeference, affine: Option<Affine>) -> io::Re
         if let (true, Ok(wkt)) = (PICTURES.iter().any(|own| extension.eq_ignore_ascii_case(own)), &wkt) {
             let mut bytes = Vec::new();
             aux_xml::write(&mut bytes, &affine, wkt)?;
-            // It belongs to this file only, and GDAL overwrites it without asking.
+            // This sidecar belongs to one file only, and GDAL overwrites it without asking.
             all.push(Companion { path: orogen_io::format::sidecar::aux_xml(path), bytes, shared: false });
         }
     }

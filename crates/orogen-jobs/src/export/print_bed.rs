@@ -1,4 +1,4 @@
-//! Whether a printer can print a model: its bed, and its layers.
+//! Checks whether a printer can print a model: the size of its bed, and the thickness of its layers.
 
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::number;
@@ -12,7 +12,7 @@ pub const BED: OptionSpec = OptionSpec::new("bed", "WxDxH", ValueKind::Text).wit
              that does not fit is refused [default: no check]",
 );
 
-/// Usual thickness of a layer in millimetres, and how many of them the advised relief has.
+/// Usual thickness of a layer in millimetres, and the number of layers that the advised relief has.
 const LAYER: f64 = 0.2;
 const LAYERS: f64 = 10.0;
 
@@ -21,7 +21,7 @@ const LAYERS: f64 = 10.0;
 pub struct ModelSize {
     /// The size.
     pub size: [f64; 3],
-    /// The part of it that does not depend on the size of the land: letters and base.
+    /// The part of the size that does not depend on the size of the land: letters and base.
     pub fixed: [f64; 3],
     /// Length of the longer side of the land.
     pub print_size: f64,
@@ -52,14 +52,14 @@ impl Bed {
     /// Checks that a model fits, with its sides along those of the bed.
     pub fn check(self, model: &ModelSize) -> Result<()> {
         let Bed([width, depth, height]) = self;
-        // How much smaller the land must be to fit between these lengths.
+        // The factor by which the land must shrink to fit.
         let factor = |axis: usize, room: f64| {
             let land = model.size[axis] - model.fixed[axis];
             if land > 0.0 { (room - model.fixed[axis]) / land } else { f64::INFINITY }
         };
         let along = factor(0, width).min(factor(1, depth)).max(factor(0, depth).min(factor(1, width)));
         let up = factor(2, height);
-        // Sizes are of vertices, in f32.
+        // Sizes come from vertices in f32.
         if along.min(up) >= 1.0 - 1e-6 {
             return Ok(());
         }
@@ -81,7 +81,7 @@ impl Bed {
     }
 }
 
-/// A warning about relief that is less than a layer.
+/// A warning if the relief is less than a layer.
 pub fn flatness(model: &ModelSize) -> Option<String> {
     let relief = model.size[2] - model.fixed[2];
     if relief >= LAYER {
@@ -96,23 +96,23 @@ pub fn flatness(model: &ModelSize) -> Option<String> {
     })
 }
 
-/// Rounded to so many digits.
+/// Rounds to this number of significant digits.
 fn digits(value: f64, count: i32, round: fn(f64) -> f64) -> f64 {
     let parts = libm::pow(10.0, f64::from(count - 1) - libm::log10(value).floor());
     round(value * parts) / parts
 }
 
-/// Rounded down to three digits.
+/// Rounds down to three significant digits.
 fn down(value: f64) -> f64 {
     digits(value * (1.0 + 1e-9), 3, f64::floor)
 }
 
-/// Rounded to parts of a unit.
+/// Rounds to multiples of 1 / `parts`.
 fn rounded(value: f64, parts: f64) -> f64 {
     (value * parts).round() / parts
 }
 
-/// "150 x 94 x 12.3", in tenths.
+/// Formats a size such as "150 x 94 x 12.3", rounded to tenths.
 pub fn shown(millimetres: [f64; 3]) -> String {
     millimetres.map(|side| number(rounded(side, 10.0))).join(" x ")
 }
@@ -137,11 +137,11 @@ mod tests {
     fn what_does_not_fit_is_refused_with_what_would() {
         let check = |text: &str| Bed::parse(text).unwrap().check(&MODEL).map_err(|error| error.to_string());
         assert_eq!(check("150x100x43"), Ok(()));
-        // Turned by a quarter.
+        // Rotated by a quarter turn.
         assert_eq!(check("100x150x43"), Ok(()));
         let expect = "the model is 150 x 100 x 43 mm in size, and the printer has room for 120 x 120 x 250 mm; use --print-size 120 or less";
         assert_eq!(check("120x120x250"), Err(expect.into()));
-        // 23 mm are the base and half of the relief.
+        // 23 mm hold the base and half of the relief.
         let why = check("220x220x23").unwrap_err();
         assert!(why.ends_with("use --exaggeration 1 or less, or --print-size 75 or less"), "{why}");
         assert!(check("220x220x2").unwrap_err().ends_with("use a thinner base, without text"));

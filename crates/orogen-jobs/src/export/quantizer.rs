@@ -38,16 +38,16 @@ pub fn from_south(options: &Options) -> bool {
     options.word("first-row") == Some("south")
 }
 
-/// The rows of a layer of plain numbers, and the range of their levels.
+/// The rows of a layer of plain numbers, and the range of the levels.
 pub struct Quantizer<'s, 'w> {
     source: &'s mut LayerSource<'w>,
     levels: Levels,
-    /// The samples, if they had to be computed before for their range or the order of rows.
+    /// The samples, if they had to be computed in advance for their range or the order of rows.
     kept: Option<Spool>,
     from_south: bool,
 }
 
-/// Samples that are read back at a time.
+/// Number of samples that are read back at a time.
 const PIECE: usize = 1 << 20;
 
 impl<'s, 'w> Quantizer<'s, 'w> {

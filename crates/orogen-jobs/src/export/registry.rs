@@ -25,7 +25,7 @@ pub fn named(name: &str) -> Option<&'static Format> {
 /// The format for a path's extension.
 ///
 /// # Errors
-/// If the extension is missing or unknown: the message suggests the closest, or lists all.
+/// If the extension is missing or unknown: the message suggests the closest one, or lists all.
 pub fn of_path(path: &Path) -> Result<&'static Format> {
     let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
     let Some(extension) = path.extension() else {
@@ -57,7 +57,7 @@ pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static Format>)> {
 /// Checks that a format has all given options.
 ///
 /// # Errors
-/// If it has not: the message names the formats that do.
+/// If it does not have one of them: the message names the formats that do.
 pub fn check(format: &Format, given: &Options) -> Result<()> {
     let Some(name) = given.names().find(|name| !format.knows(name)) else { return Ok(()) };
     let who: Vec<&Format> = ALL.iter().copied().filter(|format| format.knows(name)).collect();
@@ -65,7 +65,7 @@ pub fn check(format: &Format, given: &Options) -> Result<()> {
     Err(Error::new(ErrorKind::Request, message))
 }
 
-/// ".npy, .png and .tif".
+/// A list such as ".npy, .png and .tif".
 fn known(formats: &[&Format]) -> String {
     let names: Vec<String> = formats.iter().map(|format| format!(".{}", format.name)).collect();
     match names.as_slice() {

@@ -28,7 +28,7 @@ pub struct Written {
 /// names) are such layers; otherwise the layer with that name, as in [`LayerSource::new`].
 ///
 /// # Errors
-/// The errors of [`LayerSource::new`]; or the layers are vector features and the format does not hold them.
+/// The errors of [`LayerSource::new`]; or if the layers are vector features and the format does not hold them.
 pub(super) fn source<'w>(
     format: &Format,
     world: &'w World,
@@ -59,14 +59,14 @@ pub(super) fn source<'w>(
 ///
 /// # Errors
 /// If the format does not have an option or cannot hold the layer, no sample is finite, memory does not suffice (then
-/// nothing was started), the work was cancelled, or a file cannot be written.
+/// no work was started), the work was cancelled, or a file cannot be written.
 pub(super) fn to_file(format: &Format, source: LayerSource, options: &Options, output: &Output) -> Result<Written> {
     let (files, written) = staged(format, source, options, output)?;
     files.commit().map_err(|cause| file::explain("write", output.path(), &cause))?;
     Ok(written)
 }
 
-/// [`to_file`] without putting the files in place, for several exports together.
+/// [`to_file`] without putting the files in place, to commit several exports together.
 pub(super) fn staged<'w>(
     format: &Format,
     mut source: LayerSource<'w>,
@@ -101,7 +101,7 @@ pub(super) fn to_stream(
     Ok(written)
 }
 
-/// Calls the format's writer. If a layer has no finite sample, that error takes precedence over the format's.
+/// Calls the format's writer. If the layer has no finite sample, that error takes precedence over the format's error.
 fn write(format: &Format, source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
     (format.write)(source, options, files).map_err(|cause| {
         let own = cause.get_ref().and_then(|inner| inner.downcast_ref::<Error>());
@@ -112,7 +112,7 @@ fn write(format: &Format, source: &mut LayerSource, options: &Options, files: &m
     })
 }
 
-/// The result for a source, if any of its samples is finite.
+/// The result for a source; fails if none of its samples is finite.
 fn written(source: &LayerSource, words: String) -> Result<Written> {
     finite(source)?;
     Ok(Written { words, count: source.count() })
@@ -160,7 +160,7 @@ mod tests {
                     [outputs]\nheight = \"b\"\n";
         let world = World::open(Recipe::parse(text, "test").unwrap()).unwrap();
         let progress = Progress::none();
-        // These hold only objects.
+        // These formats hold only objects.
         for format in registry::all().iter().filter(|format| !matches!(format.name, "json" | "tres")) {
             // SRTM tiles have fixed sizes.
             let side = if format.name == "hgt" { 1201 } else { 40 };

@@ -1,5 +1,4 @@
-//! Sidecars of formats that do not store all properties: NAME.json, which [`format::sidecar`](crate::format::sidecar)
-//! reads.
+//! Sidecars of formats that do not store all properties: NAME.json, which [`orogen_io::format::sidecar`] reads.
 
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -16,7 +15,7 @@ use orogen_io::format::notes::SOFTWARE;
 use orogen_io::format::sidecar::own;
 use orogen_io::fs::{self, File};
 
-/// The option that omits it.
+/// The option that omits the sidecar.
 pub const NO_SIDECAR: OptionSpec = OptionSpec::switch("no-sidecar").with_about(
     "Do not write files beside the output: no NAME.json (size, cell size, range, seed and other metadata), no \
              .prj, no world file and no .aux.xml",
@@ -38,7 +37,7 @@ pub struct SampleEncoding {
 }
 
 impl SampleEncoding {
-    /// Integers up to `most`; those of two bytes have `byte_order`.
+    /// The encoding of integers up to `most`; integers of two bytes have `byte_order`.
     pub fn of_levels(levels: Levels, most: u16, byte_order: &'static str, from_south: bool) -> SampleEncoding {
         let (sample, byte_order) = if most == 255 { ("u8", None) } else { ("u16", Some(byte_order)) };
         SampleEncoding { sample, byte_order, levels: Some(levels), from_south, ..SampleEncoding::default() }
@@ -52,7 +51,7 @@ struct Channels<'a> {
     channels: &'a [String],
 }
 
-/// The text. Keys are in this order; keys that our reader knows have its names.
+/// The content of the sidecar. Keys are in this order; keys that the reader knows have the reader's names.
 #[derive(Debug, Serialize)]
 struct Text<'a> {
     made_by: &'static str,
@@ -94,7 +93,7 @@ struct Text<'a> {
 
 /// Writes the sidecar, unless it was switched off; returns its part of the final message.
 ///
-/// The name is NAME.json, or NAME.EXT.json if NAME.json belongs to another file or is not a sidecar of ours, such as a
+/// The name is NAME.json, or NAME.EXT.json if NAME.json belongs to another file or is not an Orogen sidecar, such as a
 /// recipe.
 ///
 /// Fails if the files fail, or both names are taken.
@@ -141,7 +140,7 @@ pub fn write(files: &mut Files, source: &LayerSource, options: &Options, held: &
     Ok(format!("; {} describes it", name(&place)))
 }
 
-/// Its path: NAME.json if that is free or belongs to this file.
+/// The path of the sidecar: NAME.json if that does not exist or belongs to this file, otherwise NAME.EXT.json.
 fn place(path: &Path, name: &str) -> PathBuf {
     let short = path.with_extension("json");
     match belongs_to(&short).as_deref() {
@@ -151,7 +150,7 @@ fn place(path: &Path, name: &str) -> PathBuf {
     }
 }
 
-/// The file that a sidecar of ours describes.
+/// The file that an Orogen sidecar describes; `None` if the file is not a sidecar.
 pub(super) fn belongs_to(sidecar: &Path) -> Option<String> {
     let mut text = String::new();
     File::open(sidecar).ok()?.take(1 << 16).read_to_string(&mut text).ok()?;

@@ -49,13 +49,13 @@ pub const OPTIONS: &[OptionSpec] =
 /// Memory for drawing a letter, in bytes.
 const LETTER: u64 = 160 << 10;
 
-/// Memory of the solid of a window, in bytes, beside that of writing the file: the mesh, and 12 bytes for each vertex
-/// and triangle. A cut takes the whole surface, what it leaves of that (of white noise, two vertices for each), and a
-/// copy for the base; with a cavity, also its ceiling at each vertex, and what that divides. A cavity has two vertices
-/// for each sample at most.
+/// Memory of the solid of a window, in bytes, in addition to the memory for writing the file: the mesh, and 12 bytes
+/// for each vertex and triangle. A cut takes the whole surface, the part that remains (for white noise, two vertices
+/// per sample), and a copy for the base. A cavity also takes its ceiling at each vertex and the divided triangles; it
+/// has at most two vertices per sample.
 #[must_use]
 pub fn memory(window: &Window, options: &Options) -> u64 {
-    // Of an adaptive mesh, one sample in five becomes a vertex.
+    // In an adaptive mesh, one sample in five becomes a vertex.
     let corners = if options.has(MAX_ERROR.name) { whole(window) / 5 } else { whole(window) };
     let copies = match (options.has(CUT.name), options.has(HOLLOW.name)) {
         (true, true) => 10,
@@ -78,9 +78,9 @@ pub struct PrintJob {
 }
 
 impl PrintJob {
-    /// The solid of the source's samples.
+    /// Makes the solid of the source's samples.
     ///
-    /// Fails if the source fails, or if no solid can be made of it.
+    /// Fails if the source fails, or if no solid can be made from it.
     pub fn new(source: &mut LayerSource, options: &Options) -> io::Result<PrintJob> {
         let bed = options.text(BED.name).map(Bed::parse).transpose()?;
         let mesh = Prepared::new(source, options, 1)?;
@@ -132,14 +132,14 @@ impl PrintJob {
         Ok(PrintJob { solid, writing: surface.progress.cloned().unwrap_or_else(Progress::none), words })
     }
 
-    /// The end of the message about it.
+    /// The end of the final message.
     #[must_use]
     pub fn words(self) -> String {
         self.words
     }
 }
 
-/// A warning about letters of this size that hardly can be printed.
+/// A warning if letters of this size are too small to print.
 fn small_letters(size: f64) -> Option<String> {
     let told = |size: f64| number((size * 10.0).round() / 10.0);
     (size < LEGIBLE).then(|| {

@@ -1,4 +1,4 @@
-//! A picture of the surfaces beside their weights: `--preview`.
+//! A picture of the surfaces in addition to their weights: `--preview`.
 
 use std::io::{self, Write};
 
@@ -14,7 +14,7 @@ use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::spool::Spool;
 use orogen_output::map::surface_picture::{SAMPLE, SurfacePacker, SurfacePainter};
 
-/// The end of the picture's name, before the extension.
+/// The suffix of the picture's name, before the extension.
 pub const SUFFIX: &str = "preview";
 
 /// The albedo, the gradient and the height of each sample, in one pass over the world.
@@ -33,8 +33,8 @@ static ROWS: Channels = Channels {
     }),
 };
 
-/// Writes the picture: the surfaces in their colors, mixed by their weights, with the relief shading of maps. The first
-/// row is the northern one. Returns its line of the final message.
+/// Writes the picture: the surfaces in their colors, blended by their weights, with the relief shading of maps. The
+/// first row is the northernmost one. Returns its line of the final message.
 ///
 /// Fails if the world or the files fail.
 pub fn write(source: &LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
@@ -60,7 +60,7 @@ pub fn write(source: &LayerSource, options: &Options, files: &mut Files) -> io::
     Ok(format!("{name}: the surfaces in their colors"))
 }
 
-/// The samples of a window in a spool, row by row, and what paints them.
+/// The samples of a window in a spool, row by row, and their painter.
 fn spooled(source: &LayerSource, files: &Files) -> io::Result<(Spool, SurfacePainter)> {
     let mut packer = SurfacePacker::new(source.window().height);
     let mut spool = files.spool();

@@ -13,11 +13,11 @@ use std::path::Path;
 pub trait Export {
     /// Exports a layer over a window to a file and its sidecars. The extension of the file determines the format, as on
     /// the command line: GeoTIFF, PNG, `.npy`, glTF and others. The layer is an output of the recipe, `node.layer`, or
-    /// one derived from the heights, such as `hillshade`; for formats of vector features it may be `contours`, `rivers`
-    /// and others.
+    /// a layer derived from the heights, such as `hillshade`; formats of vector features also accept `contours`,
+    /// `rivers` and others.
     ///
-    /// The file is written atomically. An existing file is replaced if it has the kind of the new one, but neither a
-    /// file that the world reads nor a recipe of a person. For options, progress and streams use an [`ExportJob`].
+    /// The file is written atomically. An existing file of the same kind is replaced, unless it is a file that the
+    /// world reads or a hand-written recipe. For options, progress and streams use an [`ExportJob`].
     ///
     /// # Errors
     /// If no format has this extension, there is no such layer, the world cannot make the window, or the file cannot be
@@ -32,7 +32,7 @@ impl Export for World {
         let output = OutputPolicy::default().protecting(self.recipe().files()).output(path)?;
         let mut recipe = self.recipe().clone();
         job.prepare(&mut recipe)?;
-        // Some derived layers are nodes that the opened world does not have.
+        // Some derived layers are made by nodes that the opened world does not have.
         let prepared = match recipe.nodes().len() == self.recipe().nodes().len() {
             true => None,
             false => Some(self.session().open(recipe)?),

@@ -1,17 +1,17 @@
-//! An order of boxes in which wires run from one to a later one.
+//! An order of boxes in which wires run from earlier to later boxes.
 
 /// Boxes in an order for [`Layout::new`](super::layout::Layout::new).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Forward {
-    /// The boxes; each comes after those that it reads, except within circles.
+    /// The boxes; each comes after the boxes that it reads, except within cycles.
     pub order: Vec<usize>,
-    /// For each box its place in the order.
+    /// For each box its position in the order.
     pub place: Vec<usize>,
 }
 
 impl Forward {
-    /// Finds an order. `wires` are pairs of boxes, the one that is read first. Boxes of circles come in an order that
-    /// leaves few wires backwards.
+    /// Finds an order. `wires` are pairs of boxes; the second box reads the first. Boxes of cycles are ordered such
+    /// that few wires run backwards.
     #[must_use]
     pub fn new(blocks: usize, wires: &[(usize, usize)]) -> Forward {
         let mut waits = vec![0_usize; blocks];
@@ -24,7 +24,7 @@ impl Forward {
         let mut ready: std::collections::BTreeSet<usize> = (0..blocks).filter(|block| waits[*block] == 0).collect();
         let mut order = Vec::with_capacity(blocks);
         while order.len() < blocks {
-            // Within circles the box that waits for the fewest others is next.
+            // Within cycles, the box that waits for the fewest other boxes is next.
             let circle = || (0..blocks).filter(|block| !is_placed[*block]).min_by_key(|block| waits[*block]);
             let Some(next) = ready.pop_first().or_else(circle) else { break };
             is_placed[next] = true;

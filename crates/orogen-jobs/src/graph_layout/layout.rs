@@ -6,15 +6,15 @@ use orogen_output::sheet::geometry::{Point, Size};
 /// The distances of a layout, in its units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spacing {
-    /// Between two boxes of a column.
+    /// Vertical distance between two boxes of a column.
     pub gap: f32,
-    /// Between a box and a wire that passes it, and between two such wires.
+    /// Distance between a box and a wire that passes it, and between two such wires.
     pub wire_gap: f32,
-    /// Between two columns.
+    /// Horizontal distance between two columns.
     pub alley: f32,
 }
 
-/// A wire to route.
+/// A wire between two boxes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Link {
     /// The box at its start, and the distance below its top.
@@ -38,7 +38,7 @@ pub struct Layout {
 const ROUNDS: usize = 40;
 
 impl Layout {
-    /// Places boxes; a box comes after those that it reads.
+    /// Lays out boxes and wires. A box must come after the boxes that it reads.
     #[must_use]
     pub fn new(sizes: &[Size], links: &[Link], spacing: Spacing) -> Layout {
         let wires: Vec<(usize, usize)> = links.iter().map(|link| (link.from.0, link.to.0)).collect();
@@ -51,7 +51,7 @@ impl Layout {
             (Slot::Block(_), Slot::Block(_)) => spacing.gap,
             _ => spacing.wire_gap,
         };
-        // The connections of each slot: (slot, offset below its own top, the other slot, offset below that one's top).
+        // The connections of each slot: (offset below its own top, the other slot, offset below the other slot's top).
         let mut left: Vec<Vec<(f32, usize, f32)>> = vec![Vec::new(); columns.slots.len()];
         let mut right = left.clone();
         for (way, link) in columns.ways.iter().zip(links) {
@@ -119,7 +119,7 @@ impl Layout {
                     .map(|(k, slot)| {
                         let (start, width) = (lefts[column_of[*slot]], widths[column_of[*slot]]);
                         match k {
-                            // From the box's own side to its column's, if the box is narrower.
+                            // From the box's own side to the side of its column, if the box is narrower.
                             0 => [start + sizes[*slot].width, start + width, tops[*slot] + link.from.1],
                             k if k + 1 == way.len() => [start, start, tops[*slot] + link.to.1],
                             _ => [start, start + width, tops[*slot]],
@@ -135,7 +135,8 @@ impl Layout {
 }
 
 /// Sets the tops of a column's slots as close to the wanted positions as their order and distances allow: least
-/// squares, by pooling adjacent slots that are too close (the algorithm of isotonic regression).
+/// squares, by pooling adjacent slots that are too close (the pool-adjacent-violators algorithm of isotonic
+/// regression).
 fn set(
     tops: &mut [f32],
     column: &[usize],

@@ -1,12 +1,12 @@
-//! Columns, and the order within them: the first two steps of Sugiyama, Tagawa and Toda (1981), "Methods for visual
+//! Columns and the order within them: the first two steps of Sugiyama, Tagawa and Toda (1981), "Methods for visual
 //! understanding of hierarchical system structures".
 
-/// An element of a column: a box, or a wire that passes.
+/// An element of a column: a box, or a wire that passes through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Slot {
-    /// The box of this number.
+    /// The box with this index.
     Block(usize),
-    /// The wire of this number.
+    /// The wire with this index.
     Pass(usize),
 }
 
@@ -15,7 +15,7 @@ pub enum Slot {
 pub struct Columns {
     /// All slots.
     pub slots: Vec<Slot>,
-    /// The slots of each column, from the left; each column from the top.
+    /// The slots of each column. Columns are listed from the left, slots from the top.
     pub columns: Vec<Vec<usize>>,
     /// For each wire its slots from the left: its first box, the slots it passes, its last box.
     pub ways: Vec<Vec<usize>>,
@@ -25,9 +25,9 @@ pub struct Columns {
 const ROUNDS: usize = 24;
 
 impl Columns {
-    /// Arranges boxes in columns, each left of all boxes that read it and as close to them as possible, in an order
-    /// with few crossings. `wires` are pairs of boxes, the one that is read first. There are no cycles, and a box comes
-    /// after those that it reads.
+    /// Arranges boxes in columns, each box to the left of all boxes that read it and as close to them as possible, in
+    /// an order with few crossings. `wires` are pairs of boxes; the second box reads the first. There must be no
+    /// cycles, and a box must come after the boxes that it reads.
     #[must_use]
     pub fn new(blocks: usize, wires: &[(usize, usize)]) -> Columns {
         let mut rank = vec![0usize; blocks];

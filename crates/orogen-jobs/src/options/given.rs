@@ -1,4 +1,4 @@
-//! Options that are given.
+//! Given options.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,10 +19,10 @@ pub struct Options {
 }
 
 impl Options {
-    /// The options of these declarations with their values as text; of a switch the text is ignored.
+    /// Parses options of these declarations from text; the text of a switch is ignored.
     ///
     /// # Errors
-    /// If no declaration has such a name, or a value is not valid.
+    /// If no declaration has this name, or a value is not valid.
     pub fn of<'a>(
         specs: impl IntoIterator<Item = &'static OptionSpec>,
         given: impl IntoIterator<Item = (&'a str, &'a str)>,
@@ -52,10 +52,10 @@ impl Options {
         Ok(())
     }
 
-    /// Checks that each given option of these declarations applies beside the others.
+    /// Checks that each given option of these declarations applies together with the others.
     ///
     /// # Errors
-    /// If one does not.
+    /// If one does not apply.
     pub fn check(&self, specs: &[OptionSpec]) -> Result<()> {
         let value = |spec: &OptionSpec| self.given.get(spec.name).map(|(_, text)| text.clone());
         for spec in specs.iter().filter(|spec| self.has(spec.name)) {
@@ -110,7 +110,7 @@ impl Options {
         }
     }
 
-    /// The value of an option of several numbers.
+    /// The value of an option with several numbers.
     #[must_use]
     pub fn numbers(&self, name: &str) -> Option<&[f64]> {
         match self.value(name)? {
@@ -119,7 +119,7 @@ impl Options {
         }
     }
 
-    /// The value of an option of two numbers: a range or a position.
+    /// The value of an option with two numbers: a range or a position.
     #[must_use]
     pub fn pair(&self, name: &str) -> Option<[f64; 2]> {
         self.numbers(name)?.try_into().ok()
@@ -161,8 +161,8 @@ impl Options {
         }
     }
 
-    /// The palette of `palette`, read from its file unless it has a name; with `nearest-color` its colors are not
-    /// mixed.
+    /// The palette of the option `palette`, by name or from its file; with `nearest-color` its colors are not
+    /// interpolated.
     ///
     /// # Errors
     /// If there is none, or its file cannot be read.
@@ -280,7 +280,7 @@ mod tests {
         assert_eq!(why, "there is no option `landscap`; did you mean `landscape`?");
     }
 
-    /// What is said of these options.
+    /// The result of the check of these options, with the message.
     fn checked(given: &[(&str, &str)]) -> std::result::Result<(), String> {
         const SPECS: &[OptionSpec] = &[
             OptionSpec::new("color", "WHAT", ValueKind::Word(&["map", "clay"])).with_default("map"),

@@ -1,5 +1,5 @@
-//! Options of jobs, formats and layers: declared once beside what has them, checked here. Command lines, dialogs and
-//! copied commands derive from the declarations.
+//! Options of jobs, formats and layers. They are declared once, next to their owners, and checked here. Command lines,
+//! dialogs and copied commands are derived from the declarations.
 
 mod given;
 mod palette;

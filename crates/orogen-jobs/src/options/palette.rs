@@ -8,7 +8,7 @@ use orogen_io::fs;
 use orogen_io::palette::palette::Palette;
 use orogen_io::palette::{named, read};
 
-/// The palette with this name, otherwise the one in this file.
+/// The palette with this name, or else the palette in this file.
 ///
 /// # Errors
 /// If there is neither, or the file cannot be read.

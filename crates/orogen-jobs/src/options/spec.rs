@@ -12,25 +12,25 @@ use orogen_output::sheet::paper::Paper;
 pub struct OptionSpec {
     /// The name, in lower case with hyphens: `bits` for `--bits`.
     pub name: &'static str,
-    /// The placeholder of the value in a help: `N`; empty for an option without a value.
+    /// The placeholder of the value in the help: `N`; empty for an option without a value.
     pub value: &'static str,
-    /// One line for the help, with unit and default, unless [`default`](OptionSpec::default) has it.
+    /// One line for the help, with unit and default, unless [`default`](OptionSpec::default) is set.
     pub about: &'static str,
     /// The valid values.
     pub kind: ValueKind,
-    /// The value that holds if none is given, as text; empty if none does, or if it depends on the data.
+    /// The default value, as text; empty if there is none, or if it depends on the data.
     pub default: &'static str,
-    /// A usual value, as text, from which a dialog starts; empty if there is none.
+    /// A typical value, as text, with which a dialog starts; empty if there is none.
     pub example: &'static str,
-    /// What stands before and after the value in a dialog: the unit.
+    /// The texts before and after the value in a dialog: the unit.
     pub affixes: [&'static str; 2],
     /// Other spellings of the name.
     pub aliases: &'static [&'static str],
-    /// The options that exclude this one.
+    /// The options that cannot be used together with this one.
     pub excludes: &'static [&'static str],
     /// When the option applies.
     pub condition: Condition,
-    /// The heading of the group in a help; empty for the job's own.
+    /// The heading of the group in the help; empty for the job's own options.
     pub heading: &'static str,
 }
 
@@ -39,13 +39,13 @@ pub struct OptionSpec {
 pub enum Condition {
     /// Always.
     Always,
-    /// If this option is given.
+    /// If the named option is given.
     Given(&'static str),
-    /// If an option has one of these values.
+    /// If the named option has one of these values.
     Is(&'static str, &'static [&'static str]),
-    /// If an option has another value than this one.
+    /// If the named option has a value other than this one.
     IsNot(&'static str, &'static str),
-    /// If the value of an option is a file: it has an extension.
+    /// If the value of the named option is a file, that is, has an extension.
     IsFile(&'static str),
 }
 
@@ -66,12 +66,12 @@ impl Choice {
     }
 }
 
-/// A number of a tuple.
+/// One number of a tuple.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Component {
-    /// What it is.
+    /// The name of the number.
     pub name: &'static str,
-    /// What stands behind it in a dialog: the unit.
+    /// The text after the number in a dialog: the unit.
     pub unit: &'static str,
     /// The range that a dialog offers; the job checks the value.
     pub ends: [f64; 2],
@@ -96,7 +96,7 @@ pub enum ValueKind {
     Number(f64, f64),
     /// A number above 0.
     Positive,
-    /// A number above 0, or `auto`, which is also meant if the value is left out.
+    /// A number above 0, or `auto`, which is also the value if it is left out.
     Automatic,
     /// One number or more, separated by commas.
     Numbers,
@@ -104,9 +104,9 @@ pub enum ValueKind {
     Range,
     /// Two numbers separated by a comma: a position.
     Point,
-    /// Numbers separated by commas, of which the first so many are needed.
+    /// Numbers separated by commas; the first ones, of this count, are required.
     Tuple(&'static [Component], usize),
-    /// A number of samples or pixels along the longer side up to this one, or along both: `N` or `WxH`.
+    /// A number of samples or pixels, up to this one, along the longer side or along both sides: `N` or `WxH`.
     Size(usize),
     /// A time of day, such as 17:30.
     Clock,
@@ -118,15 +118,15 @@ pub enum ValueKind {
     Text,
     /// A color: `#rrggbb` or a name.
     Color,
-    /// The name of a layer of the recipe, or of one derived from its heights.
+    /// The name of a layer of the recipe, or of a layer derived from its heights.
     Layer,
-    /// The name of a palette, or a file with one.
+    /// The name of a palette, or a file that contains one.
     Palette,
     /// A size of paper.
     Paper,
-    /// The name of a tileset of the program, or a file with one.
+    /// The name of a built-in tileset, or a file that contains one.
     Tileset,
-    /// The path of a file that is read.
+    /// The path of a file to read.
     File,
 }
 
@@ -153,42 +153,42 @@ impl OptionSpec {
         OptionSpec::new(name, "", ValueKind::Nothing)
     }
 
-    /// The same with this line for the help.
+    /// Sets the line for the help.
     pub const fn with_about(self, about: &'static str) -> OptionSpec {
         OptionSpec { about, ..self }
     }
 
-    /// The same with this default.
+    /// Sets the default.
     pub const fn with_default(self, default: &'static str) -> OptionSpec {
         OptionSpec { default, ..self }
     }
 
-    /// The same with this usual value, and what stands before and after it.
+    /// Sets a typical value, and the texts before and after it.
     pub const fn with_example(self, example: &'static str, affixes: [&'static str; 2]) -> OptionSpec {
         OptionSpec { example, affixes, ..self }
     }
 
-    /// The same with these other spellings of its name.
+    /// Sets other spellings of the name.
     pub const fn with_aliases(self, aliases: &'static [&'static str]) -> OptionSpec {
         OptionSpec { aliases, ..self }
     }
 
-    /// The same, without any of these options.
+    /// Sets the options that cannot be used together with this one.
     pub const fn without(self, excludes: &'static [&'static str]) -> OptionSpec {
         OptionSpec { excludes, ..self }
     }
 
-    /// The same, if a condition holds.
+    /// Sets the condition under which the option applies.
     pub const fn when(self, condition: Condition) -> OptionSpec {
         OptionSpec { condition, ..self }
     }
 
-    /// The same under a heading.
+    /// Sets the heading.
     pub const fn under(self, heading: &'static str) -> OptionSpec {
         OptionSpec { heading, ..self }
     }
 
-    /// Whether the option applies; `value` gives the value of another option as text, by its declaration.
+    /// Whether the option applies. `value` returns the value of another option as text, by its declaration.
     #[must_use]
     pub fn applies(&self, specs: &[OptionSpec], value: impl Fn(&OptionSpec) -> Option<String>) -> bool {
         let of = |name: &str| {
@@ -206,10 +206,10 @@ impl OptionSpec {
         holds && !self.excludes.iter().any(|name| is_given(name))
     }
 
-    /// The value that a text stands for.
+    /// Parses a value.
     ///
     /// # Errors
-    /// What the text must be.
+    /// A message that says what the text must be.
     pub(super) fn parse(&self, text: &str) -> Result<Value, String> {
         let text = text.trim();
         match self.kind {
@@ -265,16 +265,16 @@ impl OptionSpec {
         }
     }
 
-    /// Checks a value that is given as text.
+    /// Checks a value given as text.
     ///
     /// # Errors
-    /// What the text must be.
+    /// A message that says what the text must be.
     pub fn check(&self, text: &str) -> Result<(), String> {
         self.parse(text).map(drop)
     }
 }
 
-/// The word for a value that suits the data.
+/// The word for a value that is chosen from the data.
 const AUTO: &str = "auto";
 
 fn number(text: &str) -> Option<f64> {
@@ -285,7 +285,7 @@ fn positive(text: &str) -> Option<f64> {
     number(text).filter(|number| *number > 0.0)
 }
 
-/// The numbers of a tuple.
+/// Parses the numbers of a tuple.
 fn tuple(text: &str, components: &[Component], least: usize) -> Result<Vec<f64>, String> {
     let counts = least..=components.len();
     let numbers = text.split(',').map(number).collect::<Option<Vec<f64>>>();
@@ -300,7 +300,7 @@ fn tuple(text: &str, components: &[Component], least: usize) -> Result<Vec<f64>,
     })
 }
 
-/// One side or two.
+/// Parses one or two sides.
 fn sides(text: &str, most: usize) -> Result<Vec<f64>, String> {
     let side = |text: &str| text.trim().parse::<usize>().ok().filter(|side| (1..=most).contains(side));
     let sides = match text.split_once(['x', 'X']) {
@@ -310,7 +310,7 @@ fn sides(text: &str, most: usize) -> Result<Vec<f64>, String> {
     sides.ok_or_else(|| format!("it must be N or WxH, such as 1920x1080, with sides from 1 to {most}"))
 }
 
-/// The hours after midnight.
+/// Parses a time of day; returns hours after midnight.
 fn clock(text: &str) -> Option<f64> {
     let number = |text: &str, end: u32| text.trim().parse::<u32>().ok().filter(|n| *n < end).map(f64::from);
     let (hour, minute) = text.split_once(':')?;
@@ -322,7 +322,7 @@ fn word(text: &str, words: impl Iterator<Item = &'static str> + Clone) -> Result
     found.map(Value::Word).ok_or_else(|| format!("it must be {}", one_of(&words.collect::<Vec<_>>())))
 }
 
-/// "a, b or c".
+/// Joins words as in "a, b or c".
 fn one_of(words: &[&str]) -> String {
     match words {
         [init @ .., last] if !init.is_empty() => format!("{} or {last}", init.join(", ")),
@@ -330,7 +330,7 @@ fn one_of(words: &[&str]) -> String {
     }
 }
 
-/// All options of several declarations, by name, each with those that have it.
+/// All options of several declarations, by name, each with the owners that declare it.
 pub(crate) fn by_name<T: Copy>(
     declared: impl IntoIterator<Item = (T, &'static [OptionSpec])>,
 ) -> Vec<(&'static OptionSpec, Vec<T>)> {

@@ -11,18 +11,19 @@ use orogen_grid::progress::Progress;
 
 use super::tileset::Tileset;
 
-/// How far a class may be from a whole number, because classes of a cell between two samples would be no class.
+/// How far a class may be from a whole number. A value between two classes, such as an interpolated one, is not a
+/// class.
 const WHOLE: f32 = 1e-3;
 
 /// Maximum number of rows that a band adds.
 const BAND: usize = 512;
 
-/// The classes of a window, of which some rows are held.
+/// The classes of a window, of which some rows are in memory.
 pub(super) struct ClassRows<'w> {
     tileset: &'w Tileset,
     bands: Bands<'w>,
     window: Window,
-    /// The rows that are held, from `first` of the window on.
+    /// The rows in memory, starting with row `first` of the window.
     held: Vec<u8>,
     first: usize,
     finite: FiniteCount,
@@ -40,7 +41,7 @@ impl<'w> ClassRows<'w> {
         (window.width * BAND.min(window.height)) as u64
     }
 
-    /// How many of the classes so far are numbers.
+    /// The count of finite samples among the classes so far.
     pub fn finite(&self) -> FiniteCount {
         self.finite
     }
@@ -65,7 +66,7 @@ impl<'w> ClassRows<'w> {
         Ok(Classes::new([self.window.x, y], width, to - from, rows.to_vec()))
     }
 
-    /// Adds the classes of a layer of numbers; the first one where it has none.
+    /// Adds the classes of a layer of numbers. Samples without a number get the first class.
     fn classes(&mut self, grid: &Grid) -> Result<()> {
         let terrains = &self.tileset.terrains;
         self.held.reserve(grid.data().len());

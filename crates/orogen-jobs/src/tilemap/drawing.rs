@@ -19,10 +19,10 @@ use orogen_io::spool::Spool;
 use super::map::TileLayer;
 use super::tileset::{Tileset, parts};
 
-/// Maximum number of places without a tile that a map lists.
+/// Maximum number of positions without a tile that a map lists.
 const MAX_GAPS: usize = 1000;
 
-/// Bytes of tiles, classes or objects that stay in memory when they are packed.
+/// Bytes of tiles, classes or objects that stay in memory before they are packed into a file.
 pub(super) const IN_MEMORY: usize = 1 << 19;
 
 /// Tiles per row, and rows of tiles, of the map of a window.
@@ -31,7 +31,7 @@ pub(super) fn sides(layout: Layout, window: &Window) -> [usize; 2] {
     [window.width + more, window.height + more]
 }
 
-/// The rows of cells that rows of tiles see, from the first to, but not including, the last.
+/// The rows of cells on which rows of tiles depend, from the first up to, but not including, the last.
 pub(super) fn seen(layout: Layout, rows: [usize; 2]) -> [i64; 2] {
     let [top, bottom] = rows.map(|row| row as i64);
     match layout {
@@ -41,9 +41,9 @@ pub(super) fn seen(layout: Layout, rows: [usize; 2]) -> [i64; 2] {
     }
 }
 
-/// Where the tiles, classes and objects of a map are until it is written.
+/// Where the tiles, classes and objects of a map are stored until it is written.
 pub(super) struct Stores<'a> {
-    /// The file beside which they are packed; in memory without one.
+    /// Packed data is stored next to this file; in memory if there is none.
     pub path: Option<&'a Path>,
 }
 
@@ -54,7 +54,7 @@ impl Stores<'_> {
         spool.map_or_else(Recorder::in_memory, Recorder::packed)
     }
 
-    /// What is in a store.
+    /// The content of a store.
     pub fn finished<T: Record>(&self, recorder: Recorder<T>) -> Result<Records<T>> {
         recorder.finish().map_err(|cause| self.failed(&cause))
     }
@@ -65,7 +65,7 @@ impl Stores<'_> {
     }
 }
 
-/// A layer that is drawn.
+/// A layer of the map.
 struct Layer {
     tiles: Recorder<u32>,
     is_used: bool,
@@ -77,7 +77,7 @@ pub(super) struct Drawing<'a> {
     tileset: &'a Tileset,
     window: &'a Window,
     seed: u64,
-    /// Rows that are drawn at once.
+    /// Number of rows that are drawn at once.
     at_once: usize,
     pub drawable: Drawable,
     choices: Tiles,
@@ -119,8 +119,8 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Cleans classes, if they are, and draws the rows of tiles that see them: from `top` up to, but not including,
-    /// `bottom`.
+    /// Cleans classes, if requested, and draws the rows of tiles that depend on them: from `top` up to, but not
+    /// including, `bottom`.
     pub fn add(
         &mut self,
         before: Classes,
@@ -147,7 +147,7 @@ impl<'a> Drawing<'a> {
         Ok(())
     }
 
-    /// The classes that rows of tiles see.
+    /// The classes on which rows of tiles depend.
     fn around(&self, classes: &Classes, [first, last]: [usize; 2]) -> Classes {
         let (x, width) = match self.tileset.layout {
             Layout::Corner => (self.window.x, self.window.width + 1),
@@ -157,12 +157,13 @@ impl<'a> Drawing<'a> {
         classes.part([x, self.window.y + from], width, (to - from) as usize)
     }
 
-    /// How many tiles are drawn beside the map on each side: those of tiles of cells, which see one cell around them.
+    /// Number of tiles that are drawn outside the map on each side, for tiles of cells, which depend on one cell around
+    /// them.
     fn beside(&self) -> usize {
         usize::from(!self.tileset.layout.is_on_corners())
     }
 
-    /// Counts the places without a tile, before and after the clean-up.
+    /// Counts the positions without a tile, before and after the clean-up.
     fn count_gaps(&mut self, before: &Classes, cleaned: Option<&Classes>, [first, last]: [usize; 2]) {
         if self.drawable.is_complete() {
             return;
@@ -225,7 +226,7 @@ impl<'a> Drawing<'a> {
         added.map_err(|cause| self.stores.failed(&cause))
     }
 
-    /// The tiles and classes of the map, without all else.
+    /// The tiles and classes of the map, without its other properties.
     pub fn finish(self) -> Result<Drawn> {
         let stores = self.stores;
         let layers = self.layers.into_iter().map(|layer| {
@@ -244,7 +245,7 @@ impl<'a> Drawing<'a> {
     }
 }
 
-/// What is drawn of a map.
+/// The drawn part of a map.
 pub(super) struct Drawn {
     pub layers: Vec<TileLayer>,
     pub classes: Records<u8>,

@@ -1,4 +1,4 @@
-//! The files of a map of tiles, in one folder.
+//! The files of a tilemap, in one folder.
 
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -34,7 +34,7 @@ pub const SIDE: usize = 128;
 /// Memory for writing the files, in bytes.
 const ENCODERS: u64 = 12 << 20;
 
-/// A map that was written.
+/// A tilemap that was written.
 #[derive(Debug)]
 pub struct WrittenMap {
     /// The map.
@@ -48,8 +48,8 @@ pub struct WrittenMap {
 }
 
 impl TilemapJob {
-    /// Makes a map as [`TilemapJob::stream`] does and writes all its files into a folder, which is created if needed,
-    /// or none. `source` is the layer that classes are made from, for messages.
+    /// Makes a map like [`TilemapJob::stream`] and writes either all its files into a folder, which is created if
+    /// needed, or none. `source` is the layer that classes are made from, for messages.
     ///
     /// # Errors
     /// The errors of [`TilemapJob::stream`]; if a file may not be replaced or cannot be written; or if no sample is
@@ -80,7 +80,7 @@ fn is_missing(map: &Tilemap, name: &str) -> bool {
     name == LDTK && !map.fits_ldtk() || name == GODOT && !map.fits_godot()
 }
 
-/// Writes all files, or none.
+/// Writes all files, or none of them.
 fn write(map: &Tilemap, outputs: &[Output], progress: &Progress) -> Result<()> {
     let json = serde_json::to_string_pretty(&map.summary(SOFTWARE))
         .map_err(|e| Error::new(ErrorKind::Internal, e.to_string()))?;
@@ -117,7 +117,7 @@ fn write_file(map: &Tilemap, name: &str, json: &str, out: &mut CancellableWriter
 }
 
 impl WrittenMap {
-    /// A description: its files, its tiles, its classes, and the places without a tile.
+    /// A description: files, tiles, classes, and positions without a tile.
     #[must_use]
     pub fn words(&self) -> String {
         let WrittenMap { map, folder, missing, .. } = self;
@@ -154,7 +154,7 @@ impl WrittenMap {
     }
 }
 
-/// Which places without a tile the summary lists.
+/// The text about the positions without a tile that the summary lists.
 fn listed(map: &Tilemap) -> String {
     match map.gaps.len() as u64 == map.gap_count {
         true => "them".into(),

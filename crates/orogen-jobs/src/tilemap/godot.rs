@@ -1,9 +1,9 @@
 //! Resources of Godot 4.3 and later: a TileSet, and a scene with a TileMapLayer for each layer and a Marker2D for each
 //! scattered object.
 //!
-//! The formats are those of Godot's text resources (docs.godotengine.org, "TSCN file format"). The cells of a
-//! TileMapLayer are bytes: a version, and for each cell its column, row, source, and the column, row and flips of its
-//! tile, all as 16 bits little-endian.
+//! The formats are Godot's text resources (docs.godotengine.org, "TSCN file format"). The cells of a TileMapLayer are
+//! bytes: a version, and for each cell its column, row, source, and the column, row and flips of its tile, all as 16
+//! bits little-endian.
 
 use std::io::{self, Write};
 
@@ -16,10 +16,10 @@ use super::tileset::{Fit, Tile, Tileset};
 use orogen_output::markup::Base64;
 use orogen_output::tilemap::rows::godot_cells;
 
-/// The largest column and row of a cell, which has 16 bits.
+/// The largest column and row of a cell, which have 16 bits.
 const MAX_PLACE: usize = 32_767;
 
-/// Maximum number of tiles of a layer: a scene has 16 letters for each.
+/// Maximum number of tiles of a layer: a scene takes 16 characters for each.
 const MAX_TILES: usize = 1 << 24;
 
 /// The names of the directions, clockwise from the north.
@@ -34,8 +34,8 @@ const DIRECTIONS: [&str; 8] = [
     "top_left_corner",
 ];
 
-/// Writes the tileset as a TileSet with terrains. `image` is the name of its picture beside the file, and `made_by` the
-/// program.
+/// Writes the tileset as a TileSet with terrains. `image` is the name of its picture in the same folder, and `made_by`
+/// is the program.
 ///
 /// # Errors
 /// If `out` fails.
@@ -98,21 +98,22 @@ pub fn write_tileset(tileset: &Tileset, out: &mut dyn Write, image: &str, made_b
 }
 
 impl Tilemap {
-    /// Whether the map can be a scene of Godot: it has at most 32767 tiles along a side, and 2^24 tiles, because a
-    /// scene lists each.
+    /// Whether the map can be a Godot scene: it has at most 32767 tiles along a side, and at most 2^24 tiles, because a
+    /// scene lists each tile.
     #[must_use]
     pub fn fits_godot(&self) -> bool {
         self.width.max(self.height) <= MAX_PLACE && self.width * self.height <= MAX_TILES
     }
 
-    /// Writes the map as a scene. `tileset` is the name of the TileSet beside the file, and `made_by` the program.
+    /// Writes the map as a scene. `tileset` is the name of the TileSet in the same folder, and `made_by` is the
+    /// program.
     ///
     /// # Errors
     /// If `out` fails.
     pub fn write_tscn(&self, out: &mut dyn Write, tileset: &str, made_by: &str) -> io::Result<()> {
         writeln!(out, "[gd_scene load_steps=2 format=4]\n; made by {made_by}\n")?;
         writeln!(out, "[ext_resource type=\"TileSet\" path={} id=\"1\"]\n", text(tileset))?;
-        // Crisp pixels.
+        // Nearest-neighbor filtering, for crisp pixels.
         writeln!(out, "[node name=\"Map\" type=\"Node2D\"]\ntexture_filter = 1")?;
         for (name, tiles) in self.used() {
             writeln!(out, "\n[node name={} type=\"TileMapLayer\" parent=\".\"]", text(&node_name(name)))?;
@@ -154,7 +155,7 @@ fn text(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
 }
 
-/// A name that a node may have.
+/// Converts a name to one that a node may have.
 fn node_name(name: &str) -> String {
     name.replace(['.', ':', '@', '/', '"', '%'], "_")
 }

@@ -1,4 +1,4 @@
-//! From a world to a tilemap.
+//! Making a tilemap from a world.
 
 use std::path::{Path, PathBuf};
 
@@ -21,11 +21,11 @@ use super::map::Tilemap;
 use super::map_objects::{has_objects, objects};
 use super::tileset::Tileset;
 
-/// How many cells are made at once. Maps are the same for any numbers.
+/// Number of cells that are processed at once. It does not affect the map.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AtOnce {
-    /// Approximate number of cells that are cleaned at once, and minimum number of rows: fewer would be cleaned several
-    /// times, because of the halo.
+    /// Approximate number of cells that are cleaned at once, and minimum number of rows. With fewer rows, most would be
+    /// cleaned several times because of the halo.
     pub cleaned: usize,
     pub cleaned_rows: usize,
     /// Approximate number of cells that are drawn at once.
@@ -34,16 +34,16 @@ pub(super) struct AtOnce {
 
 const AT_ONCE: AtOnce = AtOnce { cleaned: 1 << 22, cleaned_rows: 256, drawn: 1 << 17 };
 
-/// What a map is made with.
+/// The settings of a tilemap.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 #[must_use]
 pub struct TilemapJob {
-    /// The tiles.
+    /// The tileset.
     pub tileset: Tileset,
     /// Whether classes are changed where the tileset has no tile.
     pub cleans: bool,
-    /// Whether maps of Tiled are infinite: chunks of tiles at the positions of the world's cells.
+    /// Whether Tiled maps are infinite: chunks of tiles at the positions of the world's cells.
     pub is_infinite: bool,
     /// The files that the tileset was read from.
     pub files: Vec<PathBuf>,
@@ -51,7 +51,7 @@ pub struct TilemapJob {
 }
 
 impl TilemapJob {
-    /// A map with these tiles, cleaned.
+    /// Creates a job that draws maps with this tileset and cleans them.
     pub fn new(tileset: Tileset) -> TilemapJob {
         TilemapJob { tileset, cleans: true, is_infinite: false, files: Vec::new(), at_once: AT_ONCE }
     }
@@ -61,7 +61,7 @@ impl TilemapJob {
         TilemapJob { cleans, ..self }
     }
 
-    /// Sets whether maps of Tiled are infinite.
+    /// Sets whether Tiled maps are infinite.
     pub fn with_infinite(self, is_infinite: bool) -> TilemapJob {
         TilemapJob { is_infinite, ..self }
     }
@@ -73,9 +73,10 @@ impl TilemapJob {
         view.sized(SIDE)
     }
 
-    /// Adds what the map needs to a recipe: its own [classes](orogen_engine::recipe::class) with the numbers of the
-    /// tileset's terrains of their names, or the [standard ones](orogen_engine::recipe::class::standard), if it has
-    /// none and no output `class`. `cell` is the map's cell in metres, at which shares of classes are exact.
+    /// Adds what the map needs to a recipe. [Classes](orogen_engine::recipe::class) that the recipe has get the numbers
+    /// of the tileset's terrains with the same names. If it has no classes and no output `class`, the [standard
+    /// classes](orogen_engine::recipe::class::standard) are added. `cell` is the map's cell in metres; the shares of
+    /// classes are exact at this cell.
     ///
     /// # Errors
     /// If the recipe has neither classes nor heights, or if the tileset has no terrain with the name of a class.
@@ -85,7 +86,7 @@ impl TilemapJob {
         classify(recipe, cell)
     }
 
-    /// The memory for streaming a map of this window beside that of the engine, in bytes.
+    /// Memory for streaming a map of this window in addition to the memory of the engine, in bytes.
     #[must_use]
     pub fn memory(&self, window: &Window) -> u64 {
         let is_cleaned = self.is_cleaned(&self.tileset.drawable());
@@ -93,8 +94,8 @@ impl TilemapJob {
         let (width, layers) = (around.width as u64, self.tileset.layer_names().len() as u64);
         let rows = |at_once: usize| (at_once.min(window.height + 1)) as u64;
         let cleaned = (rows(self.cleaned_rows(window, is_cleaned)) + 2 * cleaning_halo(is_cleaned) as u64 + 4) * width;
-        // Classes that are held, before and after the clean-up, and copies for drawing; of a drawn cell two numbers in
-        // each layer.
+        // Classes in memory before and after the clean-up, and copies for drawing; for each drawn cell two numbers per
+        // layer.
         let drawn = rows(self.drawn_rows(window)) * width * (8 * layers + 4);
         let stores = (layers + 2) * (RECORDS + IN_MEMORY as u64);
         3 * cleaned + ClassRows::memory(window) + drawn + stores
@@ -105,7 +106,7 @@ impl TilemapJob {
         self.cleans && !drawable.is_complete()
     }
 
-    /// Rows that are cleaned at once, if any are.
+    /// Number of rows that are cleaned at once, if the map is cleaned.
     fn cleaned_rows(&self, window: &Window, is_cleaned: bool) -> usize {
         match is_cleaned {
             true => (self.at_once.cleaned / window.width.max(1)).max(self.at_once.cleaned_rows),
@@ -113,14 +114,15 @@ impl TilemapJob {
         }
     }
 
-    /// Rows of tiles that are drawn at once.
+    /// Number of rows of tiles that are drawn at once.
     fn drawn_rows(&self, window: &Window) -> usize {
         (self.at_once.drawn / window.width.max(1)).max(1)
     }
 
-    /// Makes the map of the cells of a window in memory. `world` is of a [prepared](TilemapJob::prepare) recipe.
+    /// Makes the map of the cells of a window in memory. `world` must be made of a [prepared](TilemapJob::prepare)
+    /// recipe.
     ///
-    /// Any part of a map has the same tiles as the whole.
+    /// Any part of a map has the same tiles as the whole map.
     ///
     /// ```
     /// use orogen_engine::{Progress, Window, World, presets};
@@ -137,27 +139,27 @@ impl TilemapJob {
     /// ```
     ///
     /// # Errors
-    /// If the window is not in the world, if a class is none of the tileset's, or if `progress` is cancelled.
+    /// If the window is not in the world, if a class is not a class of the tileset, or if `progress` is cancelled.
     pub fn make(&self, world: &World, window: &Window, progress: &Progress) -> Result<Tilemap> {
         self.draw(world, window, None, progress)
     }
 
-    /// Makes a map as [`TilemapJob::make`] does, in [bounded memory](TilemapJob::memory): tiles, classes and objects
-    /// are packed in temporary files beside `path`, if they are many.
+    /// Makes a map like [`TilemapJob::make`], in [bounded memory](TilemapJob::memory): large amounts of tiles, classes
+    /// and objects are packed into temporary files next to `path`.
     ///
     /// # Errors
-    /// Also if memory does not suffice, or if the disk is full or fails.
+    /// The errors of [`TilemapJob::make`]; if memory does not suffice; or if the disk is full or fails.
     pub fn stream(&self, world: &World, window: &Window, path: &Path, progress: &Progress) -> Result<Tilemap> {
         self.afford(world, window, 0)?;
         let _held = world.budget().reserve(self.memory(window))?;
         self.draw(world, window, Some(path), progress)
     }
 
-    /// Checks that a map, the classes of its cells while they are computed, and `beside` bytes fit into memory
+    /// Checks that a map, the classes of its cells while they are computed, and `beside` further bytes fit into memory
     /// together.
     ///
     /// # Errors
-    /// If they do not; the message has what all of it needs.
+    /// If they do not; the message states the total that is needed.
     pub(super) fn afford(&self, world: &World, window: &Window, beside: u64) -> Result<()> {
         world.bands(&[CLASS], window, self.memory(window).saturating_add(beside), &Progress::none()).map(drop)
     }
@@ -169,7 +171,7 @@ impl TilemapJob {
             Drawing::new(&self.tileset, window, world.recipe().world.seed, self.drawn_rows(window), &stores);
         let is_cleaned = self.is_cleaned(&drawing.drawable);
         let halo = cleaning_halo(is_cleaned);
-        // Tiles see one cell around them.
+        // Tiles depend on one cell around them.
         let around = world.surroundings(window, 1 + halo);
         let some = Window { height: around.height.min(AT_ONCE.cleaned_rows), ..around };
         let work = world.work(&world.plan(&[CLASS], &some)?)?;
@@ -216,7 +218,7 @@ impl TilemapJob {
     }
 }
 
-/// How far the clean-up looks.
+/// The distance in cells that the clean-up depends on.
 fn cleaning_halo(is_cleaned: bool) -> usize {
     if is_cleaned { HALO } else { 0 }
 }

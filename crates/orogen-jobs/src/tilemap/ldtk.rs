@@ -1,7 +1,7 @@
 //! A project of the level editor LDtk with one level.
 //!
-//! The format is that of LDtk 1.5 (ldtk.io/json, "JSON schema"). Each layer of tiles is a layer of the level, tilesets
-//! of cells have the classes as an IntGrid layer, and scattered objects are entities. LDtk lists layers top to bottom.
+//! The format is LDtk 1.5 (ldtk.io/json, "JSON schema"). Each layer of tiles is a layer of the level, tilesets of cells
+//! have the classes as an IntGrid layer, and scattered objects are entities. LDtk lists layers top to bottom.
 
 use std::io::{self, Write};
 
@@ -27,10 +27,10 @@ const SIZE_FIELD: u32 = 5;
 const TURN_FIELD: u32 = 6;
 const FIRST: u32 = 16;
 
-/// The opacity of the classes, which lie over the tiles and are hidden at first.
+/// The opacity of the classes, which are above the tiles and initially hidden.
 const CLASSES_OPACITY: f64 = 0.5;
 
-/// A layer of the level, uppermost first.
+/// A layer of the level; LDtk lists the uppermost first.
 enum Layer<'a> {
     Objects,
     Classes,
@@ -38,8 +38,8 @@ enum Layer<'a> {
 }
 
 impl Tilemap {
-    /// Whether the map can be a project of LDtk: it has at most 2^20 tiles, because a project lists each, and no
-    /// quarter turns, which LDtk does not know.
+    /// Whether the map can be an LDtk project: it has at most 2^20 tiles, because a project lists each tile, and no
+    /// quarter turns, which LDtk does not support.
     #[must_use]
     pub fn fits_ldtk(&self) -> bool {
         self.width.saturating_mul(self.height) <= MAX_TILES
@@ -61,8 +61,8 @@ impl Tilemap {
         layers
     }
 
-    /// Writes the map as a project of LDtk. `image` is the name of the tileset's picture beside the file, and `made_by`
-    /// the program.
+    /// Writes the map as an LDtk project. `image` is the name of the tileset's picture in the same folder, and
+    /// `made_by` is the program.
     ///
     /// # Errors
     /// If `out` fails.
@@ -126,7 +126,7 @@ impl Tilemap {
         Ok(())
     }
 
-    /// An identifier in the form of a UUID, of the nth thing of this map.
+    /// An identifier in the form of a UUID, for the nth object of this map.
     fn iid(&self, nth: u64) -> String {
         let place = mix64(self.window.x as u64 ^ mix64(self.window.y as u64 ^ mix64(self.window.cell.to_bits())));
         let [high, low] = [1, 2].map(|half| mix64(self.seed ^ place ^ mix64(nth.wrapping_mul(4).wrapping_add(half))));
@@ -192,7 +192,7 @@ impl Tilemap {
                 "color": entity_color(nth), "renderMode": "Ellipse", "showName": true, "tilesetId": null, "tileRenderMode": "FitInside",
                 "tileRect": null, "uiTileRect": null, "nineSliceBorders": [], "maxCount": 0, "limitScope": "PerLevel",
                 "limitBehavior": "MoveLastOne", "pivotX": 0.5, "pivotY": 0.5, "tileId": null,
-                // Fields have numbers of their own for each kind.
+                // Each kind has its own field numbers.
                 "fieldDefs": [field("size", SIZE_FIELD + field_uid(nth)), field("turn", TURN_FIELD + field_uid(nth))],
             })
         });
@@ -240,14 +240,14 @@ impl Tilemap {
     }
 }
 
-/// A value as text without its last brace, so that more keys may follow.
+/// A JSON value as text without its last brace, so that more keys can be appended.
 fn open(value: &Value) -> String {
     let mut text = value.to_string();
     text.pop();
     text
 }
 
-/// A name as LDtk allows it: letters, digits and underscores, not beginning with a digit.
+/// Converts a name to an LDtk identifier: letters, digits and underscores, not starting with a digit.
 fn identifier(name: &str) -> String {
     let mut text: String = name.chars().map(|at| if at.is_ascii_alphanumeric() { at } else { '_' }).collect();
     if !text.starts_with(|at: char| at.is_ascii_alphabetic()) {
@@ -264,7 +264,7 @@ fn layer_uid(layer: &Layer, nth: usize) -> u32 {
     }
 }
 
-/// Each kind of object has four numbers: its own, and those of its fields.
+/// Each kind of object has four numbers: its own, and the numbers of its fields.
 fn field_uid(kind: usize) -> u32 {
     1000 + 4 * kind as u32
 }

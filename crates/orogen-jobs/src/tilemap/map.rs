@@ -14,12 +14,12 @@ use super::tileset::Tileset;
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct TileLayer {
-    /// The tiles, row-major, as the files of a map have them: 0 where there is none, and otherwise 1 more than the
+    /// The tiles, row-major, as stored in map files: 0 for no tile, otherwise 1 more than the
     /// [number](super::tileset::number) of the tile.
     pub tiles: Records<u32>,
-    /// Whether it has any tile.
+    /// Whether the layer has any tile.
     pub is_used: bool,
-    /// Whether any tile is turned by a quarter.
+    /// Whether any tile is rotated by a quarter turn.
     pub is_turned: bool,
 }
 
@@ -27,37 +27,38 @@ pub struct TileLayer {
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Tilemap {
-    /// The tiles.
+    /// The tileset.
     pub tileset: Tileset,
-    /// The cells of the map: a class each. Their size is in metres.
+    /// The window of the map's cells, with one class per cell. The cell is in metres.
     pub window: Window,
-    /// The class of each cell, row-major; of a corner layout the class at each corner of a tile.
+    /// The class of each cell, row-major; in a corner layout, the class at each corner of a tile.
     pub classes: Records<u8>,
-    /// How many cells have each class of the tileset.
+    /// Number of cells of each class of the tileset.
     pub class_counts: Vec<u64>,
     /// Tiles per row.
     pub width: usize,
     /// Rows of tiles.
     pub height: usize,
-    /// A layer for each class, bottom to top, or one for all of a wang tileset.
+    /// One layer for each class, bottom to top, or a single one for a wang tileset.
     pub layers: Vec<TileLayer>,
-    /// Places without a tile before the clean-up.
+    /// Number of positions without a tile before the clean-up.
     pub gaps_before: u64,
-    /// Places without a tile in the map.
+    /// Number of positions without a tile in the map.
     pub gap_count: u64,
-    /// The first of them, up to 1000.
+    /// The first positions without a tile, at most 1000.
     pub gaps: Vec<Gap>,
-    /// Cells whose class the clean-up changed.
+    /// Number of cells whose class the clean-up changed.
     pub changed: u64,
-    /// How many of the classes it was made from are numbers. Cells without a class have the first one.
+    /// The count of finite samples among the classes that the map was made from. Cells without a class have the first
+    /// one.
     pub finite: FiniteCount,
     /// The names of the kinds of scattered objects.
     pub kinds: Vec<String>,
     /// The scattered objects on the map, from back to front.
     pub objects: Records<MapObject>,
-    /// Whether maps of Tiled are infinite.
+    /// Whether Tiled maps are infinite.
     pub is_infinite: bool,
-    /// The seed by which variants of tiles are chosen: that of the world.
+    /// The seed for choosing variants of tiles: the world's seed.
     pub seed: u64,
 }
 
@@ -68,7 +69,7 @@ impl Tilemap {
         self.window.width + usize::from(self.tileset.layout == Layout::Corner)
     }
 
-    /// Gives each object with its number, from 0.
+    /// Calls `of_object` with each object and its number, from 0.
     pub(super) fn each_object(&self, mut of_object: impl FnMut(u64, MapObject) -> io::Result<()>) -> io::Result<()> {
         let (mut reader, mut objects, mut nth) = (self.objects.reader(), Vec::new(), 0);
         loop {
@@ -87,13 +88,13 @@ impl Tilemap {
 /// A scattered object on a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapObject {
-    /// Its kind: an index of [`Tilemap::kinds`].
+    /// The kind: an index of [`Tilemap::kinds`].
     pub kind: usize,
-    /// Tiles from the left and upper side of the map.
+    /// The position, in tiles from the left and upper side of the map.
     pub position: [f64; 2],
     /// Scale factor.
     pub size: f64,
-    /// Turn in degrees, clockwise.
+    /// Rotation in degrees, clockwise.
     pub turn: f64,
 }
 

@@ -12,7 +12,7 @@ use orogen_io::records::Records;
 use super::drawing::{Stores, sides};
 use super::map::MapObject;
 
-/// The least spacing, in cells, of scattered objects that are on a map: a cell holds few of them.
+/// Minimum spacing, in cells, of scattered objects on a map, so that a cell holds only a few.
 const MIN_SPACING: f64 = 0.5;
 
 /// Approximate number of cells whose objects are found at once.
@@ -28,7 +28,7 @@ pub(super) fn has_objects(world: &World, cell: f64) -> bool {
     recipe.scatter().iter().any(|entry| is_drawn(entry, cell)) && recipe.outputs().any(|name| name == HEIGHT)
 }
 
-/// The kinds of the recipe's scattered objects, and those on the map, ordered from back to front.
+/// The kinds of the recipe's scattered objects, and the objects on the map, ordered from back to front.
 pub(super) fn objects(
     world: &World,
     layout: Layout,
@@ -69,7 +69,7 @@ fn objects_of_rows(
     progress: &Progress,
 ) -> Result<Vec<MapObject>> {
     let scatter = world.recipe().scatter();
-    // Half a tile from the first sample, which is the middle of a cell, to the side of its tile.
+    // Half a tile from the first sample, which is the center of a cell, to the side of its tile.
     let before = match layout {
         Layout::Corner => 0.0,
         Layout::Dual => 1.0,
@@ -77,7 +77,7 @@ fn objects_of_rows(
     };
     let origin = [window.x, window.y].map(|at| at as f64 - before);
     let columns = 0.0..sides(layout, window)[0] as f64;
-    // The world has objects up to a cell beyond its last sample, and a cell before the first of this window.
+    // The world has objects up to one cell beyond its last sample, and one cell before the first sample of this window.
     let rows = Window { y: window.y + top as i64, height: bottom - top, ..*window };
     let around = world.surroundings(&rows, 1);
     let found = world.objects(&around, progress)?;

@@ -1,8 +1,8 @@
 //! Tilemaps: terrain classes of a world drawn with tiles, as files for map editors, engines and programs.
 //!
-//! [`job::TilemapJob`] makes a [`map::Tilemap`] from a world, in memory or in bounded memory; [`art`] draws the
-//! tilesets of the program, and [`load`] reads those of others; [`tiled`], [`ldtk`], [`godot`], [`preview`] and
-//! [`table`] write the map; [`files`] puts all of it into a folder.
+//! [`job::TilemapJob`] makes a [`map::Tilemap`] from a world, in memory or in bounded memory. [`art`] draws the
+//! built-in tilesets, and [`load`] reads others. [`tiled`], [`ldtk`], [`godot`], [`preview`] and [`table`] write the
+//! map; [`files`] writes all of these into a folder.
 
 mod class_rows;
 mod drawing;

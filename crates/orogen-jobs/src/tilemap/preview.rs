@@ -13,17 +13,17 @@ use super::tileset::{Fit, Tile};
 /// Maximum side of a picture in pixels.
 const MAX_SIDE: usize = 8192;
 
-/// Memory for the tiles of the rows of a picture that are drawn at once, in bytes.
+/// Memory, in bytes, for the tiles of the rows that are drawn at once.
 const BAND: usize = 2 << 20;
 
 impl Tilemap {
-    /// How many pixels of the map are one of its picture along either side: 1 up to 8192 pixels, and otherwise a
-    /// divisor or a multiple of the side of a tile.
+    /// Number of pixels of the map per pixel of its picture along each side: 1 up to 8192 pixels, otherwise a divisor
+    /// or a multiple of the side of a tile.
     #[must_use]
     pub fn reduction(&self) -> usize {
         let size = self.tileset.size;
         let side = self.width.max(self.height);
-        // A whole number of pixels for each tile.
+        // A whole number of pixels per tile.
         let within = (1..=size).find(|by| size.is_multiple_of(*by) && side * (size / by) <= MAX_SIDE);
         within.unwrap_or_else(|| size * side.div_ceil(MAX_SIDE))
     }
@@ -44,7 +44,7 @@ impl Tilemap {
     }
 
     /// Writes the picture of the map as a PNG: all pixels of its tiles, or of a large map every
-    /// [`Tilemap::reduction`]th. It is transparent where nothing is drawn.
+    /// [`Tilemap::reduction`]th. It is transparent where there are no tiles.
     ///
     /// # Errors
     /// If `out` fails.
@@ -59,7 +59,7 @@ impl Tilemap {
             bytes.fill(0);
             let mut rows = rows.zip(bytes.chunks_mut(width * depth)).peekable();
             while rows.peek().is_some() {
-                // The tiles of as many rows as memory is meant for.
+                // The tiles of as many rows as fit in the memory for them.
                 let (mut lines, mut tiles) = (Vec::new(), Vec::new());
                 while let Some((y, line)) = rows.next_if(|_| lines.len() * self.width * 4 * self.layers.len() <= BAND) {
                     lines.push((y * by % size, line));
@@ -91,7 +91,7 @@ impl<'m> TileRows<'m> {
         TileRows { map, readers: used.map(|layer| layer.tiles.reader()).collect(), row: Arc::default(), next: 0 }
     }
 
-    /// The tiles of a row in each layer that has any; no row before the last one that was asked for.
+    /// The tiles of a row in each non-empty layer. Rows must be requested in order.
     fn row(&mut self, row: usize) -> io::Result<Arc<Vec<Vec<u32>>>> {
         if row >= self.next {
             let skipped = ((row - self.next) * self.map.width) as u64;

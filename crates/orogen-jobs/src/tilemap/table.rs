@@ -32,25 +32,25 @@ pub struct Summary {
     pub tile: usize,
     /// The classes, bottom to top.
     pub classes: Vec<ClassCount>,
-    /// Places without a tile before the clean-up.
+    /// Number of positions without a tile before the clean-up.
     pub without_tile_before: u64,
-    /// Cells that the clean-up changed.
+    /// Number of cells that the clean-up changed.
     pub changed: u64,
-    /// Places without a tile in the map, up to 1000 of them.
+    /// Positions without a tile in the map, at most 1000.
     pub without_tile: Vec<MissingTile>,
 }
 
-/// How much of a map a class is.
+/// A class and its number of cells.
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
 pub struct ClassCount {
-    /// Its name.
+    /// The name of the class.
     pub name: String,
-    /// Its cells.
+    /// The number of cells.
     pub cells: u64,
 }
 
-/// A place without a tile.
+/// A position without a tile.
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
 pub struct MissingTile {
@@ -61,11 +61,11 @@ pub struct MissingTile {
     /// The class whose layer has no tile there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub class: Option<String>,
-    /// Its missing mask: N 1, NE 2, E 4, SE 8, S 16, SW 32, W 64, NW 128.
+    /// The mask for which there is no tile: N 1, NE 2, E 4, SE 8, S 16, SW 32, W 64, NW 128.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mask: Option<u8>,
-    /// The classes along the sides and at the corners of the missing wang tile, clockwise from the north; those that
-    /// its layout does not tell apart are 0.
+    /// The classes along the sides and at the corners of the missing wang tile, clockwise from the north; 0 where its
+    /// layout does not distinguish classes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wang: Option<[u8; 8]>,
 }

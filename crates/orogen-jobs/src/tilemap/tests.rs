@@ -1,4 +1,4 @@
-//! Laws of the tilesets that the program draws, and of the files of a map.
+//! Properties of the built-in tilesets and of the files of a map.
 
 use orogen_engine::{Recipe, World};
 use orogen_grid::autotile::classes::Classes;
@@ -22,8 +22,8 @@ fn covers(tileset: &Tileset, class: u8, mask: u8, [x, y]: [usize; 2]) -> bool {
     tileset.row(tile, y)[x][3] > 0
 }
 
-/// A border has the same shape whether it is drawn by tiles of cells or by tiles on corners, so tiles join: in one of
-/// the two layouts every pixel beside a side is in the middle of a tile of the other.
+/// A border has the same shape whether it is drawn by tiles of cells or by tiles on corners, so tiles join: every pixel
+/// next to a side of a tile in one of the two layouts is in the middle of a tile in the other.
 #[test]
 fn borders_are_the_same_in_all_layouts() {
     for set in SETS {
@@ -41,7 +41,7 @@ fn borders_are_the_same_in_all_layouts() {
                         .map(|(bit, [dx, dy])| u8::from(classes.at(column + dx, row + dy) >= class) << bit);
                     let mask = Layout::Blob.reduced(bits.sum());
                     let of_cells = classes.at(column, row) >= class && covers(&blob, class, mask, [x % size, y % size]);
-                    // The tile on corners that shows this pixel begins in the middle of a cell.
+                    // The tile on corners that shows this pixel starts in the middle of a cell.
                     let (from_x, from_y) = (x - size / 2, y - size / 2);
                     let (column, row) = ((from_x / size) as i64, (from_y / size) as i64);
                     let corners = [[0, 0, 128], [1, 0, 2], [0, 1, 32], [1, 1, 8]];
@@ -108,7 +108,7 @@ fn parts_of_an_unbounded_map_join() {
     }
 }
 
-/// What an engine reads from the map is what the library says.
+/// An engine reads the same map from the files as the library has in memory.
 #[test]
 fn the_files_hold_the_map() {
     let map = map(Layout::Blob, &Window::new(7, 5, 10.0));
@@ -130,7 +130,7 @@ fn the_files_hold_the_map() {
     );
 }
 
-/// Scattered objects, and terrains wide enough for the simplest tiles only here and there.
+/// Scattered objects, and terrains that are only in places wide enough for the simplest tiles.
 const ROUGH: &str = r#"
     orogen = 1
     world = { seed = 7, size = [1500, 2500], cell = 10 }
@@ -140,7 +140,7 @@ const ROUGH: &str = r#"
     scatter = [{ name = "tree", spacing = 40 }, { name = "rock", spacing = 60 }]
 "#;
 
-/// The tileset with 13 tiles a class.
+/// The tileset with 13 tiles per class.
 fn simple() -> Tileset {
     let mut tileset = SETS[0].draw(Layout::Blob);
     tileset.tiles.retain(|tile| match tile.fit {
@@ -169,7 +169,7 @@ fn files(map: &Tilemap) -> Vec<Vec<u8>> {
     files
 }
 
-/// The bits of all files of a map are the same, wherever its tiles are, and in however many pieces they were drawn.
+/// All files of a map are bit-identical, wherever its tiles are stored and however many pieces they were drawn in.
 #[test]
 fn a_streamed_map_is_the_map_in_memory() {
     let folder = TestFolder::new("tilemap-streamed").unwrap();
@@ -182,7 +182,7 @@ fn a_streamed_map_is_the_map_in_memory() {
         (ROUGH, simple(), bounded),
         (ROUGH, SETS[0].draw(Layout::Dual), bounded),
         (ROUGH, SETS[1].draw(Layout::Corner), bounded),
-        // A picture with a pixel for some tiles, and packed layers.
+        // A picture with one pixel for several tiles, and packed layers.
         (RECIPE, SETS[0].draw(Layout::Edge), Window { width: 8500, height: 130, ..unbounded }),
     ];
     for (recipe, tileset, window) in cases {
@@ -200,7 +200,7 @@ fn a_streamed_map_is_the_map_in_memory() {
         }
         let cells: u64 = whole.class_counts.iter().sum();
         assert_eq!(cells, whole.classes.len());
-        // A part that is cleaned by itself.
+        // A part that is cleaned separately.
         let part = Window::new(60, 30, 10.0).at(window.x + 80, window.y + 95);
         let part = job.make(&world, &part, &Progress::none()).unwrap();
         for (whole_layer, layer) in whole.layers.iter().zip(&part.layers) {

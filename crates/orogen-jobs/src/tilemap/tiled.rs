@@ -1,9 +1,9 @@
 //! Files for the map editor Tiled: a tileset (TSX), and a map as XML (TMX) and as JSON (TMJ).
 //!
 //! The formats are those of Tiled 1.8 (doc.mapeditor.org, "TMX Map Format" and "JSON Map Format"). Each terrain has a
-//! wang set, so that its borders can be edited with the terrain brush; wang tiles have one for all terrains. Tiles
-//! chosen by rules have none, because such a tile fits many surroundings. Each class of a map is a tile layer; wang
-//! tiles have one layer.
+//! wang set, so that its borders can be edited with the terrain brush; wang tiles have one wang set for all terrains.
+//! Tiles chosen by rules have none, because such a tile fits many surroundings. Each class of a map is a tile layer;
+//! wang tiles have a single layer.
 
 use std::io::{self, Write};
 
@@ -20,13 +20,13 @@ use orogen_output::tilemap::rows::listed;
 /// The version of the formats.
 const VERSION: &str = "1.8";
 
-/// The version of Tiled that writes it: readers choose by it how they read an infinite map.
+/// The version of Tiled in the files: it determines how readers interpret an infinite map.
 const TILED: &str = "1.8.6";
 
 /// The first number of the tileset's tiles in a map; 0 is no tile.
 const FIRST: u32 = 1;
 
-/// Maximum number of tiles of a map whose layers are lists of numbers, which all programs read. Those of larger maps
+/// Maximum number of tiles of a map whose layers are lists of numbers, which all programs read. Layers of larger maps
 /// are compressed.
 const MAX_LISTED: usize = 1 << 20;
 
@@ -41,11 +41,11 @@ struct WangSet {
 struct WangColor {
     name: String,
     color: String,
-    /// A tile that shows it; -1 if there is none.
+    /// A tile that represents the terrain; -1 if there is none.
     tile: i64,
 }
 
-/// The type of its wang sets.
+/// The type of the wang sets.
 fn wang_type(tileset: &Tileset) -> &'static str {
     match tileset.layout {
         Layout::Edge => "edge",
@@ -68,7 +68,7 @@ fn wang_sets(tileset: &Tileset) -> Vec<WangSet> {
     };
     if tileset.is_wang {
         let directions = tileset.layout.directions();
-        // Colors are numbered from 1, and 0 stands for what a layout does not tell apart.
+        // Colors are numbered from 1; 0 is for positions that a layout does not distinguish.
         let colors = |id: [u8; 8]| std::array::from_fn(|bit| (id[bit] + 1) * (directions >> bit & 1));
         let tiles: Vec<(u32, [u8; 8])> = own()
             .filter_map(|tile| match tile.fit {
@@ -87,7 +87,7 @@ fn wang_sets(tileset: &Tileset) -> Vec<WangSet> {
         let colors = |mask: u8| std::array::from_fn(|bit| mask >> bit & 1);
         let tiles: Vec<(u32, [u8; 8])> = own()
             .filter_map(|tile| match tile.fit {
-                // A tile without any color is no part of a wang set.
+                // A tile without any color is not part of a wang set.
                 Fit::Layer { class: of, mask } if usize::from(of) == class && mask != 0 => {
                     Some((tile.picture, colors(mask)))
                 }
@@ -99,7 +99,7 @@ fn wang_sets(tileset: &Tileset) -> Vec<WangSet> {
     (0..tileset.terrains.len()).map(set).filter(|set| !set.tiles.is_empty()).collect()
 }
 
-/// The tiles of the picture that are drawn more or less often than others, with their weights.
+/// The tiles of the picture with a weight other than 1, with their weights.
 fn weights(tileset: &Tileset) -> Vec<(u32, f32)> {
     let mut weights: Vec<(u32, f32)> = (tileset.tiles.iter())
         .filter(|tile| tile.weight != 1.0 && tile.flip == Flip::NONE)
@@ -110,7 +110,7 @@ fn weights(tileset: &Tileset) -> Vec<(u32, f32)> {
     weights
 }
 
-/// Writes the tileset as TSX. `image` is the name of its picture beside the file, and `made_by` the program.
+/// Writes the tileset as TSX. `image` is the name of its picture in the same folder, and `made_by` is the program.
 ///
 /// # Errors
 /// If `out` fails.
@@ -155,7 +155,7 @@ pub fn write_tsx(tileset: &Tileset, out: &mut dyn Write, image: &str, made_by: &
     writeln!(out, " </wangsets>\n</tileset>")
 }
 
-/// The tileset as it is embedded in a map in JSON.
+/// The tileset as embedded in a JSON map.
 fn tileset_json(tileset: &Tileset, image: &str) -> Value {
     let sets = wang_sets(tileset).into_iter().map(|set| {
         let icon = set.colors.first().map_or(-1, |color| color.tile);
@@ -189,7 +189,7 @@ fn tileset_json(tileset: &Tileset, image: &str) -> Value {
 const CHUNK: usize = 16;
 
 impl Tilemap {
-    /// The first tile and the size of what the chunks of an infinite map span; of another map, its size.
+    /// The first tile and the size of the area that the chunks of an infinite map cover; for another map, its size.
     fn span(&self) -> ([i64; 2], [usize; 2]) {
         if !self.is_infinite {
             return ([0, 0], [self.width, self.height]);
@@ -202,8 +202,8 @@ impl Tilemap {
         ([x, y], [width, height])
     }
 
-    /// Gives the chunks of a layer that have a tile, at the positions of the world's cells: where each begins, and its
-    /// tiles.
+    /// Calls a function with the chunks of a layer that have a tile: the position of each chunk in cells of the world,
+    /// and its tiles.
     fn each_chunk(
         &self,
         tiles: &Records<u32>,
@@ -215,7 +215,7 @@ impl Tilemap {
         let (mut reader, mut band, mut chunk) = (tiles.reader(), Vec::new(), Vec::new());
         let mut next = 0;
         for y in rows.map(|row| row * side) {
-            // The rows of the map in these chunks.
+            // The rows of the map that these chunks contain.
             let (first, last) = (next, ((y + side - self.window.y) as usize).min(self.height));
             reader.read((last - first) * self.width, &mut band)?;
             next = last;
@@ -248,18 +248,18 @@ impl Tilemap {
         Ok(())
     }
 
-    /// Tiles from the origin of the map in a file to the upper left tile.
+    /// The distance from the origin of the map in a file to the upper left tile, in tiles.
     fn place(&self) -> [i64; 2] {
         if self.is_infinite { [self.window.x, self.window.y] } else { [0, 0] }
     }
 
-    /// The pixel of a position on the map in a file.
+    /// The pixel position of a map position in a file.
     fn pixel(&self, position: [f64; 2]) -> [f64; 2] {
         let ([left, top], size) = (self.place(), self.tileset.size as f64);
         [(position[0] + left as f64) * size, (position[1] + top as f64) * size]
     }
 
-    /// The layers with a tile, with their names.
+    /// The layers that have a tile, with their names.
     pub(super) fn used(&self) -> impl Iterator<Item = (&str, &Records<u32>)> {
         let named = self.tileset.layer_names().into_iter().zip(&self.layers);
         named.filter(|(_, layer)| layer.is_used).map(|(name, layer)| (name, &layer.tiles))
@@ -269,7 +269,7 @@ impl Tilemap {
         self.width * self.height <= MAX_LISTED
     }
 
-    /// Writes the map as TMX. `tileset` is the name of the TSX beside the file, and `made_by` the program.
+    /// Writes the map as TMX. `tileset` is the name of the TSX in the same folder, and `made_by` is the program.
     ///
     /// # Errors
     /// If `out` fails.
@@ -328,8 +328,8 @@ impl Tilemap {
         writeln!(out, "</map>")
     }
 
-    /// Writes the map as TMJ, with its tileset. `image` is the name of the tileset's picture beside the file, and
-    /// `made_by` the program.
+    /// Writes the map as TMJ, with its tileset. `image` is the name of the tileset's picture in the same folder, and
+    /// `made_by` is the program.
     ///
     /// # Errors
     /// If `out` fails.
@@ -426,13 +426,13 @@ fn write_packed(out: &mut dyn Write, tiles: &Records<u32>) -> io::Result<()> {
     base64.finish()
 }
 
-/// Text for an attribute of XML.
+/// Escapes text for an XML attribute.
 fn quoted(text: &str) -> String {
     escaped(text).replace('"', "&quot;")
 }
 
-/// The comment that marks a file as made by a program, and not by hand.
+/// The comment that marks a file as generated by a program, as opposed to written by hand.
 fn mark(made_by: &str) -> String {
-    // Two hyphens end a comment.
+    // Two hyphens would end the comment.
     format!("<!-- made by {} -->", escaped(made_by).replace("--", "- -"))
 }

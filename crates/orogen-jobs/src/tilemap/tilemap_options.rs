@@ -14,7 +14,7 @@ const fn layout(layout: Layout) -> Choice {
 
 const LAYOUTS: &[Choice] = &[layout(Layout::Blob), layout(Layout::Edge), layout(Layout::Corner), layout(Layout::Dual)];
 
-/// The options, in the order of a help.
+/// The options, in the order of the help.
 const OPTIONS: &[OptionSpec] = &[
     OptionSpec::new("tileset", "T", ValueKind::Tileset)
         .with_about(
@@ -37,7 +37,7 @@ impl TilemapJob {
     /// The options, for front ends.
     pub const OPTIONS: &[OptionSpec] = OPTIONS;
 
-    /// A map with all that is chosen by [`OPTIONS`](TilemapJob::OPTIONS), cleaned.
+    /// A job with everything that [`OPTIONS`](TilemapJob::OPTIONS) chooses.
     ///
     /// # Errors
     /// If an option does not apply, there is no such tileset, or it cannot be read.
@@ -46,7 +46,7 @@ impl TilemapJob {
     }
 }
 
-/// The job for options.
+/// Creates the job from options.
 fn read(options: &Options) -> Result<TilemapJob> {
     options.check(OPTIONS)?;
     let name = options.text("tileset").unwrap_or(SETS[0].name);

@@ -1,4 +1,4 @@
-//! Tilesets by name: one of the program's own, or a file.
+//! Tilesets by name: a built-in one, or a file.
 
 use std::path::PathBuf;
 
@@ -15,13 +15,13 @@ use super::tileset::Tileset;
 pub struct TilesetSource {
     /// The tileset.
     pub tileset: Tileset,
-    /// The files; none of a tileset of the program.
+    /// The files; empty for a built-in tileset.
     pub files: Vec<PathBuf>,
 }
 
-/// The tileset of the program with this name, or that in the file: a tileset of Tiled (.tsx) or a description (.toml).
-/// `layout` is how tiles follow their surroundings; by default that of the file, or `blob`. `wang_set` names the wang
-/// set of a .tsx that has several.
+/// Finds the built-in tileset with this name, or reads the file: a Tiled tileset (.tsx) or a description (.toml).
+/// `layout` says how tiles depend on their surroundings; by default the layout of the file, or `blob`. `wang_set` names
+/// the wang set to use if a .tsx has several.
 ///
 /// # Errors
 /// If there is no such tileset, or it has no such layout or wang set.

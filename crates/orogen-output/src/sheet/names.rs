@@ -251,8 +251,9 @@ fn moved(line: &[Point], by: f32) -> Vec<Point> {
     if line.len() < 2 { Vec::new() } else { (0..line.len()).map(aside).collect() }
 }
 
-/// The course of the river nearest to a point, downstream, and its largest width; `None` if no river is near. It consists
-/// of the nearest stretch, the stretches downstream of it, and upstream the widest stretch at each confluence.
+/// The course of the river nearest to a point, downstream, and its largest width; `None` if no river is near.
+///
+/// It consists of the nearest stretch, the stretches downstream of it, and upstream the widest one at each confluence.
 fn course(rivers: &[(f32, Vec<Point>)], at: Point) -> Option<(f32, Vec<Point>)> {
     /// Maximum distance between the ends of stretches, in millimetres.
     const JOINED: f32 = 0.6;

@@ -1,4 +1,4 @@
-//! Nodes that a derived layer appends to a recipe.
+//! Nodes that derived layers append to a recipe.
 
 use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_engine::declare::Input;
@@ -14,7 +14,7 @@ use orogen_engine::world::HEIGHT;
 pub const STREAM: OptionSpec = OptionSpec::new("stream", "AREA", ValueKind::Number(0.0, 1e15))
     .with_about("Minimum drainage area of streams, in m^2 [default: 1e6]");
 
-/// A recipe with known heights, and the given options.
+/// A recipe with heights and the given options, to which nodes are appended.
 pub struct Appended<'a> {
     recipe: &'a mut Recipe,
     heights: Input,
@@ -22,7 +22,7 @@ pub struct Appended<'a> {
 }
 
 impl<'a> Appended<'a> {
-    /// For a recipe; `None` if it has no heights.
+    /// Wraps a recipe; `None` if it has no heights.
     pub fn new(recipe: &'a mut Recipe, options: &'a Options) -> Option<Appended<'a>> {
         let heights =
             recipe.output_inputs().iter().find(|(name, _)| name == HEIGHT).map(|(_, heights)| heights.clone());
@@ -34,7 +34,7 @@ impl<'a> Appended<'a> {
         self.recipe
     }
 
-    /// The recipe, to change it.
+    /// The recipe, mutably.
     pub fn recipe_mut(&mut self) -> &mut Recipe {
         self.recipe
     }
@@ -44,8 +44,8 @@ impl<'a> Appended<'a> {
         self.heights.clone()
     }
 
-    /// The heights inside the world for a node that reads around its samples: they are extrapolated by a number of
-    /// samples beyond the edges of a bounded world, and missing beyond these.
+    /// The heights inside the world, for a node that reads the surroundings of its samples. Beyond the edges of a
+    /// bounded world they are extrapolated by this number of samples, and missing further out.
     pub fn extrapolated(&mut self, samples: u32) -> Input {
         let source = self.heights();
         match self.recipe.world.size {
@@ -59,13 +59,13 @@ impl<'a> Appended<'a> {
         self.options
     }
 
-    /// Appends a node named after its op, unless a node with that name exists already.
+    /// Appends a node named after its op, unless a node with that name already exists.
     pub fn add(&mut self, node: impl Into<Node>) -> AppendedNode {
         let node = node.into();
         self.add_as(node.spec().op, node)
     }
 
-    /// Appends a node with this name in place of its op's.
+    /// Appends a node with this name instead of the name of its op.
     fn add_as(&mut self, name: &str, node: impl Into<Node>) -> AppendedNode {
         let node_name = AppendedNode::of(name);
         if !self.recipe.nodes().iter().any(|named| named.name == node_name.0) {
@@ -80,7 +80,7 @@ impl<'a> Appended<'a> {
         self.add(Drainage { source, stream, ..Drainage::default() })
     }
 
-    /// The drainage area: that of the recipe's own network, otherwise that of the heights.
+    /// The drainage area: from the recipe's own network if it has one, otherwise computed from the heights.
     pub fn flow(&mut self) -> Input {
         match OwnNetwork::of(self.recipe) {
             Some(network) => Input::Node(network.layer(network.flow())),
@@ -88,7 +88,7 @@ impl<'a> Appended<'a> {
         }
     }
 
-    /// The flow direction, like [`Appended::flow`]. There is none in the sea.
+    /// The flow direction, from the same source as [`Appended::flow`]. There is none in the sea.
     pub fn receiver(&mut self) -> Input {
         let Some(network) = OwnNetwork::of(self.recipe) else { return self.drainage().layer("receiver") };
         let receiver = Input::Node(network.layer(network.receiver()));

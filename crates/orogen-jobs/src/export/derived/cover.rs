@@ -1,4 +1,4 @@
-//! The layers that a recipe's surfaces read, and their cover of the ground.
+//! The layers that a recipe's surfaces read, and the cover of the ground by surfaces.
 
 use super::appended::{Appended, AppendedNode};
 use orogen_engine::filter::Slope;
@@ -8,19 +8,19 @@ use orogen_engine::world::HEIGHT;
 use orogen_grid::grid::Grid;
 use orogen_output::map::surface_blend::{SurfaceBlend, SurfaceLayer};
 
-/// Adds the nodes to a recipe that compute its surfaces.
+/// Appends the nodes that compute a recipe's surfaces.
 pub fn prepare(to: &mut Appended) {
     expand(to.recipe_mut());
 }
 
-/// The same, and the nodes of [`slopes`].
+/// Like [`prepare`], and appends the nodes of [`slopes`].
 pub fn prepare_with_slopes(to: &mut Appended) {
     prepare(to);
     let source = to.extrapolated(1);
     to.add(Slope { source, ..Slope::default() });
 }
 
-/// The layers with the rise to the east and to the south.
+/// The layers with the slopes to the east and to the south.
 pub fn slopes() -> [String; 2] {
     ["east", "south"].map(|layer| AppendedNode::of("slope").name_of(layer))
 }
@@ -48,8 +48,8 @@ pub fn shares_and_positions(recipe: &Recipe) -> Vec<String> {
     shares(recipe).into_iter().chain(positions).collect()
 }
 
-/// The surfaces over a window, from layers in the order of [`shares`] or of [`shares_and_positions`]; others may
-/// follow.
+/// The surfaces over a window, from layers in the order of [`shares`] or of [`shares_and_positions`]; further layers
+/// are ignored.
 pub fn of<'a>(recipe: &'a Recipe, layers: &'a [Grid]) -> SurfaceBlend<'a> {
     let names = names(recipe);
     let (mut shares, mut positions) = (layers[1..].iter(), layers[shares(recipe).len()..].iter());

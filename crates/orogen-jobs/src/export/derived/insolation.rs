@@ -18,8 +18,8 @@ const SEASON: OptionSpec =
              autumn or winter",
     );
 
-/// The time step of a single day, in hours. The days of a longer period have different sunrises, which evens out
-/// shadows between time steps.
+/// The time step of a single day, in hours. Over a longer period the sunrise varies, which smooths shadows between time
+/// steps.
 const STEP_OF_A_DAY: f64 = 0.1;
 
 /// Option for the latitude.
@@ -60,7 +60,7 @@ pub static LAYER: Derived = Derived {
     ),
 };
 
-/// The requested days.
+/// The chosen first and last day; `None` by default.
 fn days(to: &Appended, latitude: f64) -> Result<Option<[f64; 2]>> {
     match (to.options().whole(DAY.name), to.options().word(SEASON.name)) {
         (Some(_), Some(_)) => {
@@ -76,7 +76,7 @@ fn days(to: &Appended, latitude: f64) -> Result<Option<[f64; 2]>> {
     }
 }
 
-/// The latitude of the center of the world, if its heights are a real place and its map gives the latitude.
+/// The latitude of the center of the world, if its heights are a real place and its map has a latitude.
 fn latitude_of(to: &Appended) -> Option<f64> {
     let size = to.recipe().world.size?;
     latitude::latitude(&to.recipe().georeference()?, size[0] / 2.0, size[1] / 2.0)

@@ -26,16 +26,16 @@ pub struct Derived {
     pub name: &'static str,
     /// A one-line description.
     pub about: &'static str,
-    /// The palette for maps of it; empty if a map makes no sense.
+    /// The palette for maps of the layer; empty if it cannot be mapped.
     pub palette: &'static str,
     /// The options of the layer.
     pub options: fn() -> &'static [OptionSpec],
-    /// How it is computed.
+    /// How the layer is computed.
     pub made: Made,
 }
 
 impl Derived {
-    /// The channels, if the layer is more than a layer of a node.
+    /// The channels, if the layer is not simply a layer of a node.
     #[must_use]
     pub fn channels(&self) -> Option<&Channels> {
         match &self.made {
@@ -53,20 +53,20 @@ impl Derived {
 
 /// How a derived layer is computed.
 pub enum Made {
-    /// By nodes that are appended to the recipe before its world is opened: it is a layer of one of them.
+    /// By nodes that are appended to the recipe before its world is opened; the layer is a layer of one of them.
     Nodes(NodeLayer),
-    /// Sample by sample from layers of appended nodes: it has several channels, or shows surfaces.
+    /// Sample by sample from layers of appended nodes, for layers with several channels or with surfaces.
     Channels(Channels),
 }
 
 /// A layer computed by nodes.
 pub struct NodeLayer {
-    /// Whether one of them is a solver, which needs a bounded world.
+    /// Whether one of the nodes is a solver, which needs a bounded world.
     pub bounded: bool,
-    /// Whether a world with [its own network](orogen_engine::recipe::network::OwnNetwork) needs no solver for it.
+    /// Whether the nodes need no solver in a world with [its own network](orogen_engine::recipe::network::OwnNetwork).
     pub network: bool,
-    /// Whether it has finite samples where there is no height, or none where there is one: its finite samples are then
-    /// those of the heights.
+    /// Whether the layer may be finite where there is no height, or missing where there is one. If so, finite samples
+    /// of the heights are counted instead.
     pub counts_heights: bool,
     /// Appends the nodes, and returns the input that the layer reads.
     ///
@@ -81,19 +81,19 @@ impl NodeLayer {
         NodeLayer { bounded: false, network: false, counts_heights: false, append }
     }
 
-    /// The same for bounded worlds.
+    /// Restricts the layer to bounded worlds.
     #[must_use]
     pub const fn bounded(self) -> NodeLayer {
         NodeLayer { bounded: true, ..self }
     }
 
-    /// The same for bounded worlds, and for worlds with their own network.
+    /// Restricts the layer to bounded worlds and worlds with their own network.
     #[must_use]
     pub const fn bounded_or_network(self) -> NodeLayer {
         NodeLayer { bounded: true, network: true, ..self }
     }
 
-    /// The same with the finite samples of the heights.
+    /// Counts the finite samples of the heights instead of those of the layer.
     #[must_use]
     pub const fn counting_heights(self) -> NodeLayer {
         NodeLayer { counts_heights: true, ..self }
@@ -106,13 +106,14 @@ pub struct Channels {
     pub nature: Nature,
     /// The names of the channels, for a [prepared](super::list::prepare) recipe.
     pub names: fn(&Recipe) -> Vec<String>,
-    /// Appends the nodes that compute what it reads.
+    /// Appends the nodes that compute the input layers.
     pub prepare: fn(&mut Appended),
-    /// The layers of a prepared recipe that it reads, at least one. It has no samples where the first one has none.
+    /// The layers of a prepared recipe that are read, at least one. The result has no samples where the first layer has
+    /// none.
     pub layers: fn(&Recipe) -> Vec<String>,
-    /// Computes them; `None` if the layers are the channels.
+    /// Computes the channels; `None` if the input layers are the channels.
     pub make: Option<MakeChannels>,
 }
 
-/// Computes the channels over a window from layers over rows that contain it: one grid per channel.
+/// Computes the channels over a window from layers over rows that contain the window: one grid per channel.
 pub type MakeChannels = fn(&Recipe, &[Grid], &Window) -> Vec<Grid>;

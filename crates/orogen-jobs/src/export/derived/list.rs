@@ -60,17 +60,17 @@ pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
     by_name(ALL.iter().map(|derived| (derived.name, (derived.options)())))
 }
 
-/// The layer of a prepared recipe whose finite samples are those of a layer: the layer itself, except for some derived
-/// ones.
+/// The layer of a prepared recipe whose finite samples are counted for `layer`: the layer itself, except for some
+/// derived layers.
 pub(crate) fn counted(recipe: &Recipe, layer: &str) -> String {
     let counts_heights = named(layer).is_some_and(|derived| match &derived.made {
         Made::Nodes(nodes) => nodes.counts_heights,
         Made::Channels(_) => false,
     });
-    // A layer of the recipe with the same name is not the derived one.
+    // A layer of the recipe with the same name is not the derived layer.
     let appended = AppendedNode::of(layer).layer(layer);
     let is_derived = recipe.output_inputs().iter().any(|(name, input)| name == layer && *input == appended);
-    // Inside the world extrapolated heights are the heights, and they are made anyway.
+    // Inside the world extrapolated heights equal the heights, and they are computed anyway.
     match (counts_heights && is_derived, recipe.world.size) {
         (true, Some(_)) => AppendedNode::of("extrapolate-1").name_of("value"),
         (true, None) => HEIGHT.into(),
@@ -79,8 +79,8 @@ pub(crate) fn counted(recipe: &Recipe, layer: &str) -> String {
 }
 
 /// Appends to a recipe the nodes that a derived layer needs; call it before the world is opened. A layer made by nodes
-/// becomes an output with the layer's name, so that everything reads it like a layer of the recipe. Nothing changes if
-/// the recipe has a layer with this name, or if there is no such derived layer.
+/// becomes an output with the layer's name, so that it can be read like any layer of the recipe. Nothing changes if the
+/// recipe has a layer with this name, or if there is no such derived layer.
 ///
 /// # Errors
 /// If an option does not belong to the layer or is invalid, or if the layer needs a bounded world and this one is
@@ -110,10 +110,10 @@ pub fn prepare(recipe: &mut Recipe, layer: &str, options: &Options) -> Result<()
     Ok(())
 }
 
-/// Checks that all given options are among those that a layer has.
+/// Checks that a layer has all given options.
 ///
 /// # Errors
-/// If one is not: the message names the layers that have it.
+/// If it does not have one of them: the message names the layers that do.
 pub(crate) fn check(layer: &str, known: &[OptionSpec], options: &Options) -> Result<()> {
     match options.names().find(|name| !known.iter().any(|spec| spec.name == *name)) {
         None => Ok(()),

@@ -1,4 +1,4 @@
-//! Layers derived from the heights, available for every recipe. One file each; [`list`] names them.
+//! Layers derived from the heights, available for every recipe. Each has its own file; [`list`] lists them.
 
 pub mod albedo;
 pub(crate) mod appended;

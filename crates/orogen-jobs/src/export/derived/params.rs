@@ -7,8 +7,8 @@ use orogen_engine::value::Value;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::number;
 
-/// The options for all numbers among an op's parameters: their names, ranges, defaults and documentation are those that
-/// the op declares. Called once for an op, because the texts are never freed.
+/// Options for all numbers among an op's parameters, with the names, ranges, defaults and documentation that the op
+/// declares. Call it only once per op, because the texts are leaked.
 pub fn options<T: OpType>() -> Vec<OptionSpec> {
     let op = T::default();
     let params = op.spec().params.iter().enumerate().filter(|(_, param)| matches!(param.shape, Shape::Number));
@@ -33,10 +33,10 @@ fn name(param: &ParamSpec) -> String {
     param.name.replace('_', "-")
 }
 
-/// An op with the given options in place of its defaults.
+/// An op with the given options, and its defaults for the others.
 ///
 /// # Errors
-/// If one is not a value of its parameter.
+/// If an option is not a valid value of its parameter.
 pub fn given<T: OpType>(options: &Options) -> Result<T> {
     let mut op = T::default();
     for (i, param) in op.spec().params.iter().enumerate() {

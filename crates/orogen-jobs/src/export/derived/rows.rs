@@ -10,7 +10,7 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 
-/// Rows that are computed at once, unless they are very wide.
+/// Number of rows that are computed at once, unless they are very wide.
 const ROWS: usize = 256;
 const SAMPLES: usize = 1 << 21;
 
@@ -24,7 +24,7 @@ pub struct Rows<'w> {
     window: Window,
     world: &'w World,
     bands: Bands<'w>,
-    /// The layers that it reads, over the current band, and the band's next row.
+    /// The layers that are read, over the current band, and the band's next row.
     layers: Vec<Grid>,
     next: usize,
 }
@@ -52,7 +52,7 @@ impl<'w> Rows<'w> {
     /// All rows at once: one grid per channel.
     ///
     /// # Errors
-    /// The errors of the rows.
+    /// The errors of computing the rows.
     pub fn whole(self) -> Result<Vec<Grid>> {
         let mut all = vec![Grid::filled(self.window, 0.0); self.channels];
         for band in self {
@@ -61,8 +61,8 @@ impl<'w> Rows<'w> {
         Ok(all)
     }
 
-    /// The next rows of the current band, and the number of finite samples among those of the first layer: weights and
-    /// colors are finite even if the heights are not.
+    /// The next rows of the current band, and the number of finite samples of the first layer. Weights and colors are
+    /// finite even where the heights are not.
     fn make(&mut self, band: &Window) -> (Vec<Grid>, FiniteCount) {
         let Some(make) = self.derived.make else {
             let layers = std::mem::take(&mut self.layers);
@@ -143,7 +143,7 @@ mod tests {
         {
             for size in ["size = [6000, 8000]", ""] {
                 let world = world(size, layer);
-                // More rows than are computed at once, up to the far edge that belongs to the neighbor.
+                // More rows than are computed at once, up to the far edge that belongs to the next window.
                 let window = Window::new(301, 401, 20.0);
                 let whole = made(layer, &world, &window);
                 for part in [

@@ -12,7 +12,7 @@ pub static LAYER: Derived = Derived {
     made: Made::Channels(Channels {
         nature: Nature::Weights,
         names: cover::names,
-        // The picture of the surfaces (`--preview`) has the relief.
+        // The picture of the surfaces (`--preview`) includes relief shading.
         prepare: cover::prepare_with_slopes,
         layers: cover::shares,
         make: Some(|recipe, layers, window| cover::of(recipe, layers).weights(window, cover::names(recipe).len())),

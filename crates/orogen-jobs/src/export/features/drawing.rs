@@ -20,13 +20,13 @@ pub struct Drawing {
     /// The layers, each with its style.
     pub layers: Vec<(FeatureLayer, Style)>,
     map: Option<Georeference>,
-    /// Distance between samples, or less for features that are not made of samples, in metres.
+    /// Distance between samples in metres, or less for features that are not made from samples.
     cell: f64,
     /// The summary of the contours of a layer of samples.
     contours: Option<String>,
 }
 
-/// A format of vector features, and of the contours of layers of samples.
+/// A format for vector features and for contours of layers of samples.
 pub const fn format(name: &'static str, about: &'static str, write: Writer) -> Format {
     Format { name, aliases: &[], about, options: OPTIONS, channels: 1, features: true, memory: contours::memory, write }
 }
@@ -93,7 +93,7 @@ impl Drawing {
         self.map.as_ref().map_or(Crs::Local, Crs::Map)
     }
 
-    /// Distance between samples, or less, in map units: that which coordinates must resolve.
+    /// The resolution that coordinates need, in map units: the distance between samples, or less.
     pub fn step(&self) -> f64 {
         self.map.as_ref().map_or(self.cell, |map| self.cell * map.per_metre[0].min(map.per_metre[1]))
     }
@@ -111,7 +111,7 @@ impl Drawing {
         }
     }
 
-    /// [`Drawing::words`], and the reason if the file lacks the coordinate system of the map.
+    /// [`Drawing::words`], and the reason if the file cannot store the coordinate system of the map.
     pub fn words_with_crs(&self) -> String {
         let words = self.words();
         match (self.crs().definition(), &self.map) {

@@ -1,4 +1,4 @@
-//! The attributes of the ground of an area.
+//! Attributes of the ground within an area.
 
 use orogen_grid::hydrography::zones::ZoneStats;
 use orogen_io::format::features::{Field, FieldType, Value};
@@ -8,12 +8,12 @@ pub const LOWEST: Field = Field { name: "lowest", kind: FieldType::Real, about: 
 pub const HIGHEST: Field = Field { name: "highest", kind: FieldType::Real, about: "highest height, m" };
 pub const MEAN: Field = Field { name: "mean", kind: FieldType::Real, about: "mean height, m" };
 
-/// The area in m^2, of samples of this cell.
+/// The area in m^2. `cell` is the distance between samples.
 pub fn area(ground: &ZoneStats, cell: f64) -> Value {
     Value::Real(ground.count as f64 * (cell * cell))
 }
 
-/// The lowest, the highest and the mean height; without samples, there are none.
+/// The lowest, the highest and the mean height; null without samples.
 pub fn heights(ground: &ZoneStats) -> [Value; 3] {
     let heights = [f64::from(ground.low), f64::from(ground.high), ground.sum / ground.count as f64];
     heights.map(|height| if ground.count > 0 { Value::Real(height) } else { Value::Null })

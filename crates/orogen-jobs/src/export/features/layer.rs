@@ -23,7 +23,7 @@ pub struct VectorLayer {
 }
 
 impl VectorLayer {
-    /// Its features from the heights and the water of a window; `None` if it is not made of these.
+    /// Computes the features from the heights and the water of a window; `None` if the layer is not made from these.
     #[must_use]
     pub fn of_ground(
         &self,
@@ -38,7 +38,7 @@ impl VectorLayer {
     }
 }
 
-/// What features are computed from.
+/// The input that features are computed from.
 pub enum Maker {
     /// The heights and the water of a window.
     Ground(fn(&FeatureSource, &FeatureOptions, &Progress) -> Result<FeatureLayer>),

@@ -1,5 +1,6 @@
-//! Vector features from heights: options (`options`, `outlets`, `layer`), the terrain that they are made of (`source`;
-//! `ground`: that of an area), and layers prepared for writing (`drawing`). The layers are in `vectors`.
+//! Vector features from heights. `options`, `outlets` and `layer` are options and definitions, `source` is the terrain
+//! that features are made from, `ground` has the attributes of an area, and `drawing` prepares layers for writing. The
+//! layers are in `vectors`.
 
 pub(crate) mod drawing;
 pub(crate) mod ground;

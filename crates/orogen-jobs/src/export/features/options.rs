@@ -64,7 +64,7 @@ pub struct FeatureOptions<'a> {
 const FEWEST: u32 = 32;
 
 impl<'a> FeatureOptions<'a> {
-    /// The given values, otherwise those of the recipe's own water, otherwise the defaults.
+    /// The given values; if there are none, the values of the recipe's own water, or the defaults.
     ///
     /// # Errors
     /// If options contradict each other, or a file of outlets cannot be read.
@@ -105,7 +105,7 @@ impl<'a> FeatureOptions<'a> {
         Ok(options)
     }
 
-    /// Minimum number of samples, at this cell, that drain to a source, and of a lake.
+    /// Minimum number of samples of this cell that drain to a source, and minimum number of samples of a lake.
     #[must_use]
     pub fn fewest(&self, cell: f64) -> [u32; 2] {
         let samples =

@@ -34,9 +34,9 @@ const MOST: usize = 1000;
 pub struct Outlets {
     /// The outlets, in the given order.
     pub all: Vec<Outlet>,
-    /// Maximum distance to the stream, in metres.
+    /// Maximum distance of an outlet to its stream, in metres.
     pub snap: Option<f64>,
-    /// The map of their coordinates.
+    /// The map that the coordinates refer to.
     map: Georeference,
 }
 
@@ -52,10 +52,10 @@ pub struct Outlet {
 }
 
 impl Outlets {
-    /// The outlets of the given options; `None` if there are none.
+    /// The outlets that the options give; `None` if there are none.
     ///
     /// # Errors
-    /// If there are two sources of them, or the file cannot be read or has another coordinate system.
+    /// If outlets are given in two ways, or the file cannot be read or has another coordinate system.
     pub fn of(given: &Options, recipe: &Recipe) -> Result<Option<Outlets>> {
         let map = recipe.georeference();
         let points = match (given.pair(OUTLET.name), given.file(OUTLETS.name)) {
@@ -114,7 +114,7 @@ impl Outlets {
 }
 
 impl Outlet {
-    /// The error about this outlet.
+    /// The error about this outlet, with the reason `why`.
     #[must_use]
     pub fn refused(&self, why: &str) -> Error {
         let name = self.name.as_ref().map_or(String::new(), |name| format!("`{}` ", name.escape_debug()));

@@ -1,4 +1,4 @@
-//! The terrain that features are made of: the heights of a window, and the water of the world around it.
+//! The terrain that features are made from: the heights of a window, and the water of the world around it.
 
 use super::options::FeatureOptions;
 use orogen_engine::plan::domain::world_windows;
@@ -17,7 +17,7 @@ use orogen_grid::progress::Progress;
 pub struct FeatureSource {
     /// The water of the whole terrain that was processed.
     pub water: Water,
-    /// The requested part of it.
+    /// The requested part of the water.
     pub frame: Frame,
     /// The shores within the frame, including their crossings with rivers.
     pub shores: Shores,
@@ -29,26 +29,28 @@ pub struct FeatureSource {
     window: Window,
     /// The requested window.
     pub requested: Window,
-    /// The heights of the requested window, if its cell is not that of the water's grid.
+    /// The heights of the requested window, if its cell differs from that of the water's grid.
     ground: Option<Grid>,
 }
 
-/// Memory per sample for features, beside the water, in bytes.
+/// Memory per sample for features in addition to the water, in bytes.
 const FEATURES: u64 = 16;
 
-/// Memory per sample for the water of a given network and its features, beside the layers that are read, in bytes.
+/// Memory per sample for the water of a given network and its features in addition to the layers that are read, in
+/// bytes.
 const OWN_MEMORY: u64 = 56;
 
-/// Samples beyond a window whose smoothed lines and crossings with shores may differ from those of other windows.
+/// Width of the border of a window, in samples, in which smoothed lines and crossings with shores may differ from those
+/// of other windows.
 const HALO: usize = 24;
 
-/// The largest lake whose samples are counted across the side of a window.
+/// Maximum number of samples of a lake that is counted completely across the side of a window.
 const MAX_LAKE: usize = 64;
 
-/// The layers of the nodes of a level that are not at its samples, beside height, flow, lake and surface.
+/// The layers of a level's nodes (which are not at its samples), in addition to height, flow, lake and surface.
 const NODES: [&str; 5] = ["node_height", "node_flow", "node_receiver", "node_east", "node_south"];
 
-/// Number of samples of a window, of which there must not be too many.
+/// Number of samples of a window; fails if there are too many.
 fn affordable(all: &Window) -> Result<u64> {
     let samples = (all.width as u64).saturating_mul(all.height as u64);
     if samples > u64::from(u32::MAX) {
@@ -61,7 +63,7 @@ fn affordable(all: &Window) -> Result<u64> {
     Ok(samples)
 }
 
-/// The samples at another cell around those of a window; the window itself at its own.
+/// The window at another cell that covers a window; at the same cell, the window itself.
 fn covering(window: &Window, cell: f64) -> Window {
     if cell == window.cell {
         return *window;
@@ -76,7 +78,7 @@ fn covering(window: &Window, cell: f64) -> Window {
 }
 
 /// The water of a level from its layers: the recipe's height, then height, flow, lake and surface of the levelled node,
-/// then its nodes. Where the recipe changes the heights, water levels change by as much.
+/// then the layers of its nodes. Where the recipe changes the heights, water levels change by the same amount.
 fn given(grids: Vec<Grid>, at_samples: bool, is_height: bool) -> Result<GivenWater> {
     let missing = || Error::new(ErrorKind::Internal, "a layer of the network is missing");
     let mut grids = grids.into_iter();
@@ -126,19 +128,19 @@ fn given(grids: Vec<Grid>, at_samples: bool, is_height: bool) -> Result<GivenWat
 const WATER: f32 = 8.0;
 
 /// The window whose water must be computed for `window`. At the world's cell or a larger one it is the whole world, so
-/// that the rivers of a window are those of the world; at a smaller cell, and in unbounded worlds, it is the window
-/// itself.
+/// that the rivers of a window are the rivers of the world. At a smaller cell, and in unbounded worlds, it is the
+/// window itself.
 fn extent(world: &World, window: &Window) -> Window {
     let spec = &world.recipe().world;
     match spec.size {
-        // With the margin of the recipe's own solvers.
+        // With the same margin as the recipe's own solvers.
         Some(size) if window.cell >= spec.cell => world_windows(size, window.cell).1.union(window),
         _ => *window,
     }
 }
 
 impl FeatureSource {
-    /// The terrain of a window; the caller holds `beside` bytes.
+    /// The terrain of a window; the caller already uses `beside` bytes.
     ///
     /// # Errors
     /// If the world has no heights, memory does not suffice, or the work was cancelled.
@@ -155,7 +157,7 @@ impl FeatureSource {
         }
         let all = extent(world, window);
         let held = affordable(&all)?.saturating_mul(MEMORY - 4 + FEATURES).saturating_add(reserved);
-        // The heights are counted by their plan.
+        // The memory for heights is counted by their plan.
         let heights = world.grid_beside(HEIGHT, &all, held, progress)?;
         world.install(|| {
             FeatureSource::from_heights(heights, world.recipe().world.sea_level as f32, window, options, progress)
@@ -176,8 +178,8 @@ impl FeatureSource {
         let [spring, fewest] = options.fewest(cell);
         let [even, cut] = options.rounds();
         let samples = covering(window, cell);
-        // So far from the border, lines are those of every other window, and a lake of few samples at a side does not
-        // reach it.
+        // At this distance from the border, lines are the same as in every other window, and a small lake at a side
+        // does not reach it.
         let halo = HALO + even + (fewest as usize).min(MAX_LAKE);
         let all = samples.grown(halo);
         let held = affordable(&all)?.saturating_mul(OWN_MEMORY).saturating_add(reserved);
@@ -198,7 +200,7 @@ impl FeatureSource {
             let sea_level = options.sea.then_some(world.recipe().world.sea_level as f32);
             let water = Water::given(given, sea_level, least, progress)?;
             let side = |first: i64, count: usize, origin: i64| {
-                // Snapped before the origin is subtracted, so that it is the same for the neighbor.
+                // Snapped before the origin is subtracted, so that adjacent windows agree.
                 let side = |sample: f64| snapped(sample * window.cell / cell) - origin as f64;
                 [side(first as f64 - 0.5), side(first as f64 + count as f64 - 0.5)]
             };
@@ -216,7 +218,7 @@ impl FeatureSource {
         })
     }
 
-    /// The same for given heights, which must contain the window.
+    /// Like [`of`](FeatureSource::of), from given heights that contain the window.
     ///
     /// # Errors
     /// If the work was cancelled.
@@ -248,13 +250,13 @@ impl FeatureSource {
         self.window.cell
     }
 
-    /// Metres east and south of the world's origin of a column and row.
+    /// The position, in metres east and south of the world's origin, of a column and row.
     #[must_use]
     pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [(self.window.x as f64 + x) * self.window.cell, (self.window.y as f64 + y) * self.window.cell]
     }
 
-    /// The column and row, with fractions, of metres east and south of the world's origin.
+    /// The column and row, with fractions, at a position in metres east and south of the world's origin.
     #[must_use]
     pub fn sample_at(&self, [east, south]: [f64; 2]) -> [f64; 2] {
         [east / self.window.cell - self.window.x as f64, south / self.window.cell - self.window.y as f64]
@@ -267,7 +269,7 @@ impl FeatureSource {
         parts.iter().map(|part| part.iter().map(ring).collect()).collect()
     }
 
-    /// Column and row of the requested window of a column and row of the water's grid.
+    /// Converts a column and row of the water's grid to the requested window.
     #[must_use]
     pub fn to_window(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (all, window) = (&self.window, &self.requested);
@@ -285,7 +287,7 @@ impl FeatureSource {
         self.near([window.y, all.y], j, all.height) * all.width + self.near([window.x, all.x], i, all.width)
     }
 
-    /// The columns and rows of the water's grid that are nearest to those of the requested window.
+    /// The columns and rows of the water's grid that are nearest to the columns and rows of the requested window.
     #[must_use]
     pub fn nearest_lines(&self) -> [Vec<usize>; 2] {
         let (all, window) = (&self.window, &self.requested);

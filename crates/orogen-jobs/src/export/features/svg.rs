@@ -11,8 +11,8 @@ use orogen_io::format::svg::{MAX_PATH, pad};
 /// Longer side in pixels.
 const LONGER: f64 = 1000.0;
 
-/// Writes layers, in metres of the world, as an SVG of the window's extent, in metres, north up. Each layer has a group
-/// with its name, polygons first and points last, with a path per feature.
+/// Writes layers, in metres of the world, as an SVG with the extent of the window, north up. Each layer is a group with
+/// its name that contains a path per feature. Layers of polygons come first, layers of points last.
 ///
 /// Fails if `out` fails.
 pub fn write(out: &mut dyn Write, layers: &[(FeatureLayer, Style)], window: &Window) -> io::Result<()> {
@@ -27,7 +27,7 @@ pub fn write(out: &mut dyn Write, layers: &[(FeatureLayer, Style)], window: &Win
         size[1]
     )?;
     let mut sorted: Vec<&(FeatureLayer, Style)> = layers.iter().collect();
-    // Filled polygons are below lines, lines below points.
+    // Filled polygons are below lines, and lines are below points.
     sorted.sort_by_key(|(layer, style)| (layer.geometry == GeometryType::Point, style.fill == "none"));
     let pen = Pen { origin: [window.east(0), window.south(0)], decimals: decimals(window.cell), unit };
     let mut text = String::new();

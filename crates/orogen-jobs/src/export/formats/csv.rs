@@ -37,7 +37,7 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
     Ok(drawing.words() + without_crs(source))
 }
 
-/// The end of the message for a world on a map.
+/// The addition to the message for a world on a map: the file has no coordinate system.
 fn without_crs(source: &LayerSource) -> &'static str {
     match source.map() {
         Some(map) if map.is_on_map() => "; without its coordinate system, which .csv cannot hold",
@@ -45,7 +45,7 @@ fn without_crs(source: &LayerSource) -> &'static str {
     }
 }
 
-/// A line for each sample, row by row from the north. A sample that is not finite has no value.
+/// Writes a line for each sample, row by row from the north. A sample that is not finite has an empty value.
 fn samples(source: &mut LayerSource, files: &mut Files) -> io::Result<String> {
     let (map, cell, layer) = (source.map(), source.window().cell, source.layer().to_string());
     let digits = decimals(map.as_ref().map_or(cell, |map| cell * map.per_metre[0].min(map.per_metre[1])));

@@ -34,7 +34,7 @@ pub const HALF: OptionSpec =
 pub const RGB: OptionSpec =
     OptionSpec::switch("rgb").with_about("Write the samples to the channels R, G and B instead of Y");
 
-/// Compressed rows that wait, and rows on their way into blocks.
+/// Compressed rows that are not yet written, and rows that are being arranged into blocks.
 fn memory(window: &Window, _: &Options) -> u64 {
     aside(3 * whole(window)).saturating_add((window.width as u64).saturating_mul(4 * 3 * 600))
 }

@@ -30,7 +30,7 @@ pub static FORMAT: Format = Format {
     options: &[MAX_ERROR, LODS, COLOR, COLOR_RANGE, EXAGGERATION, HEIGHT_CURVE, WATER, OBJECTS, SURFACES],
     channels: 1,
     features: false,
-    // Including the picture, which must be compressed before its size is known.
+    // Includes the picture, which must be compressed before its size is known.
     memory: |window, options| reserved(window, options).saturating_add(water_memory(window, options)),
     write,
 };
@@ -50,7 +50,7 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
         Some(pictures) => {
             (texture, material) = (pictures.base, pictures.material);
             for (nth, level) in levels.iter().enumerate() {
-                // A mesh of all samples has their normals at its vertices.
+                // A mesh of all samples already has their normals at its vertices.
                 let is_full = nth == 0 && mesh.max_error().is_none();
                 normal_maps.push(if is_full { None } else { Some(mesh_cover::normal_map(level)?) });
             }

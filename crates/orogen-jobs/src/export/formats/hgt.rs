@@ -27,7 +27,7 @@ fn write(source: &mut LayerSource, _: &Options, files: &mut Files) -> io::Result
     if !SIZES.contains(&[window.width, window.height]) {
         let Window { width, height, .. } = window;
         let square = if width.max(height) < 2401 { 1201 } else { 3601 };
-        // More samples over the same ground are closer together.
+        // More samples on the same ground are closer together.
         let cell = match square > width.min(height) {
             true => window.cell * width.min(height) as f64 / (square - 1) as f64,
             false => window.cell,
@@ -51,7 +51,7 @@ fn write(source: &mut LayerSource, _: &Options, files: &mut Files) -> io::Result
     Ok(format!("{} to {}, rounded to whole metres; {place}", levels.low(), levels.high()))
 }
 
-/// Whether a window of a map is the one-degree tile with that south-west corner.
+/// Whether a window on a map is the one-degree tile with this south-west corner.
 fn lies_at(map: &Georeference, window: &Window, [south, west]: [f64; 2]) -> bool {
     let [across, _, east, _, down, north] = map.affine(window, false).0;
     let step = [1.0 / (window.width - 1) as f64, 1.0 / (window.height - 1) as f64];

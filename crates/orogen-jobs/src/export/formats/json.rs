@@ -41,7 +41,7 @@ struct Vector3 {
     z: f32,
 }
 
-/// The fields that a `TreeInstance` has, without its colors.
+/// The fields of a Unity `TreeInstance`, without its colors.
 #[derive(Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 struct Tree {
@@ -59,7 +59,7 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
             LAYER.name
         ));
     }
-    // The sidecar of heights is JSON of ours too, which may be replaced otherwise.
+    // The sidecar of heights is also JSON written by Orogen, which could be replaced by mistake.
     if let Some((path, described)) = files.path().and_then(|path| Some((path, described(path)?)))
         && !files.replaces_all()
     {
@@ -107,7 +107,7 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
     Ok(numbers.collect::<Vec<_>>().join(", "))
 }
 
-/// The kinds of a recipe's objects, whether or not a window has one of them: tiles have the same numbers for them.
+/// The kinds of a recipe's objects, also those without an object in the window, so that all tiles use the same numbers.
 struct Kinds {
     names: Vec<String>,
     /// The kind of each entry.
@@ -128,7 +128,7 @@ impl Kinds {
     }
 }
 
-/// Metres between the first and the last of this many samples.
+/// Distance in metres between the first and the last of `samples` samples.
 fn length(samples: usize, window: &Window) -> f64 {
     (samples - 1) as f64 * window.cell
 }
@@ -149,12 +149,12 @@ fn tree(object: &Object, prototype_index: usize, window: &Window, levels: &Level
         },
         width_scale: size,
         height_scale: size,
-        // A positive turn about the vertical axis is clockwise there too, because its axes are left-handed.
+        // A positive turn about the vertical axis is clockwise in Unity too, because its axes are left-handed.
         rotation: object.turn.to_radians() as f32,
     }
 }
 
-/// The file that a sidecar of ours at a path describes, if that file is there.
+/// The file that an Orogen sidecar at a path describes, if that file exists.
 fn described(path: &Path) -> Option<String> {
     let file = sidecar::belongs_to(path)?;
     fs::is_present(&path.with_file_name(&file)).then_some(file)

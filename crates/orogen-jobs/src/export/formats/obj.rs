@@ -45,7 +45,8 @@ fn material(path: &Path) -> PathBuf {
     path.with_extension("mtl")
 }
 
-/// Not the plain name with another extension: a picture of the heights may use that.
+/// The path of the texture. It is not the plain name with another extension, because a picture of the heights may use
+/// that.
 fn picture(path: &Path) -> PathBuf {
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     path.with_file_name(format!("{stem}-texture.png"))

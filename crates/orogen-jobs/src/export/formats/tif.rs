@@ -23,8 +23,8 @@ pub static FORMAT: Format = Format {
     write,
 };
 
-/// A row of tiles per level while the next one is filled, the same again during compression, and compressed tiles that
-/// wait.
+/// One row of tiles per level while the next one is filled, the same again during compression, and compressed tiles
+/// that are not yet written.
 fn memory(window: &Window, _: &Options) -> u64 {
     aside(whole(window)).saturating_add((window.width as u64).saturating_mul(4 * 4 * 512))
 }

@@ -37,7 +37,7 @@ fn make(ground: &FeatureSource, _: &FeatureOptions, _: &Progress) -> Result<Feat
     let volumes = water.lake_volumes(&ground.frame, cell_area);
     let mut outlets = vec![None; water.lakes.len() + 1];
     for (id, river) in (1..).zip(&ground.rivers) {
-        // A lake that no sample shows has no number.
+        // A lake without any sample has no number.
         if let Source::Lake(lake) = river.source
             && let Some(outlet) = outlets.get_mut(lake as usize)
         {

@@ -97,7 +97,7 @@ fn make(ground: &FeatureSource, options: &FeatureOptions, progress: &Progress) -
     })
 }
 
-/// The node of an outlet: that of its sample, or of the nearest stream.
+/// The node of an outlet: the node of its sample, or of the nearest stream.
 fn snap(
     ground: &FeatureSource,
     options: &FeatureOptions,

@@ -37,7 +37,7 @@ const FIELDS: &[Field] = &[
 
 fn make(ground: &FeatureSource, options: &FeatureOptions, _: &Progress) -> Result<FeatureLayer> {
     let found = watersheds(&ground.water, &ground.frame, &ground.rivers);
-    // Labels of the requested samples, which may be finer or coarser than those of the water.
+    // Labels of the requested samples, which may be finer or coarser than the water's grid.
     let window = ground.requested;
     let [columns, rows] = ground.nearest_lines();
     let (labels, grounds) = found.sampled(&ground.water, &ground.frame, &columns, &rows);
@@ -53,7 +53,7 @@ fn make(ground: &FeatureSource, options: &FeatureOptions, _: &Progress) -> Resul
     for (k, parts) in areas.iter().enumerate() {
         let (river, known) = (found.rivers[k], grounds[k + 1]);
         if known.count == 0 {
-            // A river whose last sample is beyond the window.
+            // The river's last sample is outside the window.
             continue;
         }
         let mouth =

@@ -1,4 +1,4 @@
-//! Tilesets from files of any kind.
+//! Tilesets from files of any supported kind.
 
 use std::path::Path;
 
@@ -10,18 +10,18 @@ use super::picture::{Cut, Grid};
 use super::{description, tsx};
 use crate::tilemap::tileset::Tileset;
 
-/// Whether the name of a tileset is that of a file.
+/// Whether the name of a tileset is a file name.
 #[must_use]
 pub fn is_file(name: &str) -> bool {
     let has = |extension: &str| Path::new(name).extension().is_some_and(|of| of.eq_ignore_ascii_case(extension));
     has("tsx") || has("toml")
 }
 
-/// Reads a tileset of Tiled (.tsx) or a [description] (.toml). `layout` is how tiles on corners lie: [`Layout::Corner`]
-/// or [`Layout::Dual`]. `wang_set` names the wang set to use of a .tsx that has several.
+/// Reads a Tiled tileset (.tsx) or a [description] (.toml). `layout` says how tiles on corners are placed:
+/// [`Layout::Corner`] or [`Layout::Dual`]. `wang_set` names the wang set to use if a .tsx has several.
 ///
 /// # Errors
-/// If a file cannot be read, or is not such a tileset.
+/// If a file cannot be read, or is not a valid tileset.
 pub fn load(path: &Path, layout: Option<Layout>, wang_set: Option<&str>) -> Result<Loaded> {
     let is_toml = path.extension().is_some_and(|of| of.eq_ignore_ascii_case("toml"));
     let loaded = match is_toml {
@@ -50,10 +50,10 @@ pub fn load(path: &Path, layout: Option<Layout>, wang_set: Option<&str>) -> Resu
     Ok(Loaded { tileset, picture })
 }
 
-/// Reads the text of a tileset whose picture has `count` tiles without content; for fuzzing.
+/// Parses the text of a tileset whose picture has `count` tiles without content; for fuzzing.
 ///
 /// # Errors
-/// If it is no such tileset.
+/// If the text is not a valid tileset.
 #[doc(hidden)]
 pub fn parse(text: &str, is_toml: bool, wang_set: Option<&str>, count: usize) -> Result<Tileset> {
     let blank =

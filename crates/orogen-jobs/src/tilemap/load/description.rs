@@ -33,7 +33,7 @@ use crate::tilemap::tileset::{Fit, Terrain, Tile, Tileset};
 /// Maximum number of terrain classes.
 const MAX_CLASSES: usize = 255;
 
-/// The file.
+/// The content of the file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Description {
@@ -54,7 +54,7 @@ struct Description {
     class: Vec<Class>,
 }
 
-/// A way in which tiles may be turned.
+/// A way in which tiles may be flipped or rotated.
 #[derive(Deserialize, Clone, Copy, PartialEq)]
 #[serde(rename_all = "kebab-case")]
 enum Turn {
@@ -93,7 +93,7 @@ struct Choice {
     weight: f32,
 }
 
-/// By hand, because errors of untagged enums do not tell what is wrong.
+/// Implemented by hand, because error messages of untagged enums do not say what is wrong.
 impl<'de> Deserialize<'de> for Choice {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Choice, D::Error> {
         deserializer.deserialize_any(ChoiceVisitor)
@@ -130,7 +130,7 @@ fn flips(turns: &[Turn]) -> Flips {
     Flips { x: turns.contains(&Turn::FlipX), y: turns.contains(&Turn::FlipY), turns: turns.contains(&Turn::Rotate) }
 }
 
-/// Reads the description and the picture.
+/// Reads a description and its picture.
 ///
 /// # Errors
 /// If a file cannot be read, or the description contradicts itself or the picture.
@@ -138,7 +138,7 @@ pub fn load(path: &Path) -> Result<Loaded> {
     read(path, &text(path)?, cut)
 }
 
-/// Reads the text of a description, whose picture is cut into tiles by `cut`.
+/// Reads the text of a description; `cut` cuts its picture into tiles.
 pub(super) fn read(path: &Path, text: &str, cut: impl Fn(&Path, &Grid) -> Result<Cut>) -> Result<Loaded> {
     let failed = |why: String| unusable(path, &why);
     let described: Description =
@@ -186,7 +186,7 @@ pub(super) fn read(path: &Path, text: &str, cut: impl Fn(&Path, &Grid) -> Result
     Ok(Loaded { tileset: tileset.with_flips(flips(&described.turns), described.prefer_unturned), picture })
 }
 
-/// The classes, checked.
+/// Checks the classes.
 fn terrains(classes: &[Class]) -> std::result::Result<Vec<Terrain>, String> {
     if classes.is_empty() || classes.len() > MAX_CLASSES {
         return Err(format!("it has {} tables `[[class]]`; it needs 1 to {MAX_CLASSES}", classes.len()));
@@ -207,7 +207,7 @@ fn terrains(classes: &[Class]) -> std::result::Result<Vec<Terrain>, String> {
     Ok(terrains)
 }
 
-/// What all classes share.
+/// Properties that all classes share.
 struct Made {
     layout: Layout,
     count: usize,

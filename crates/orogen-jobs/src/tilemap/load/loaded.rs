@@ -1,4 +1,4 @@
-//! What the readers of tilesets share.
+//! Common parts of the readers of tilesets.
 
 use std::path::{Path, PathBuf};
 
@@ -15,16 +15,16 @@ const MAX_TEXT: u64 = 16 << 20;
 pub struct Loaded {
     /// The tileset.
     pub tileset: Tileset,
-    /// The picture of its tiles.
+    /// The picture of the tiles.
     pub picture: PathBuf,
 }
 
-/// The error of a tileset that cannot be used, with the reason.
+/// The error for an unusable tileset, with the reason.
 pub(super) fn unusable(path: &Path, why: &str) -> Error {
     Error::new(ErrorKind::File, format!("cannot use the tileset {}: {why}", path.display()))
 }
 
-/// The text of a file.
+/// Reads the text of a file.
 pub(super) fn text(path: &Path) -> Result<String> {
     let bytes = open::bytes(path, "read the tileset", MAX_TEXT)?
         .ok_or_else(|| unusable(path, &format!("it is larger than {} MB", MAX_TEXT >> 20)))?;

@@ -8,13 +8,13 @@ use orogen_io::open;
 
 use crate::tilemap::tileset::{MAX_TILES, Rgba};
 
-/// Maximum length of the file of a picture, in bytes.
+/// Maximum size of a picture file, in bytes.
 const MAX_FILE: u64 = 64 << 20;
 
-/// Maximum pixels of a picture.
+/// Maximum number of pixels of a picture.
 const MAX_PIXELS: usize = 1 << 26;
 
-/// Where the tiles of a picture are.
+/// The positions of the tiles in a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Grid {
     /// Width and height of a tile, in pixels.
@@ -35,7 +35,7 @@ pub(super) struct Cut {
     pub pixels: Vec<Rgba>,
 }
 
-/// The tiles of the PNG at a path.
+/// Cuts the PNG at a path into tiles.
 pub(super) fn cut(path: &Path, grid: &Grid) -> Result<Cut> {
     let failed = |why: String| Error::new(ErrorKind::File, format!("cannot use {} as tiles: {why}", path.display()));
     let bytes = open::bytes(path, "read the picture of the tiles", MAX_FILE)?

@@ -1,4 +1,4 @@
-//! Tilesets written, read again and broken.
+//! Tilesets that are written and read again, and broken tilesets.
 
 use std::path::PathBuf;
 
@@ -11,8 +11,8 @@ use crate::tilemap::art::set::SETS;
 use crate::tilemap::tiled::write_tsx;
 use crate::tilemap::tileset::{Fit, Tileset};
 
-/// A folder with a picture of 8 x 2 tiles of 4 pixels in a margin of 1 with a spacing of 2; the tile n has n in its
-/// first channel.
+/// A folder with a picture of 8 x 2 tiles of 4 pixels, with a margin of 1 and a spacing of 2; tile n has n in its first
+/// channel.
 fn folder() -> TestFolder {
     let folder = TestFolder::new("tilesets").unwrap();
     let [width, height] = [8, 2].map(|tiles| 2 + tiles * 4 + (tiles - 1) * 2);
@@ -46,7 +46,7 @@ fn error(folder: &TestFolder, name: &str, text: &str) -> String {
 
 const HEAD: &str = "picture = \"tiles.png\"\nsize = 4\nmargin = 1\nspacing = 2\n";
 
-/// What the program writes for Tiled it reads again: all tiles except those of single cells, which no wang set has.
+/// Tilesets written for Tiled are read back, except for tiles of single cells, which no wang set contains.
 #[test]
 fn tilesets_are_read_as_they_were_written() {
     let folder = TestFolder::new("tilesets").unwrap();
@@ -81,7 +81,7 @@ fn descriptions_have_masks_turns_and_margins() {
     assert_eq!((set.count, set.columns, set.name.as_str(), set.terrains[1].color), (16, 8, "set", [16, 32, 48]));
     assert_eq!([set.row(9, 3)[3], set.row(15, 0)[0]], [[9, 0, 255, 255], [15, 0, 255, 255]]);
     assert_eq!(set.tiles.iter().map(|tile| tile.weight).fold(0.0, f32::max), 3.0);
-    // A quarter of a picture of its own: tile 3 has its border all around except in the north.
+    // A quarter of a separate picture: tile 3 has a border on all sides except the north.
     assert_eq!(set.tiles.iter().filter(|tile| tile.picture == 3).count(), 4);
 }
 
@@ -195,7 +195,7 @@ fn wang_sets_of_tiled_are_layers_or_wang_tiles() {
     assert_eq!(found.layout, Layout::Corner);
     let names: Vec<&str> = found.terrains.iter().map(|terrain| terrain.name.as_str()).collect();
     assert_eq!((names, found.terrains[0].color), (vec!["dirt", "grass"], [0x11, 0x22, 0x33]));
-    // Three tiles, and the mixed one flipped; the incomplete tile is left out.
+    // Three tiles, and the mixed one flipped; the incomplete tile is omitted.
     assert_eq!(found.tiles.len(), 3 + 3);
     let single = set("Path", "edge", &[(4, "1,0,1,0,1,0,1,0"), (5, "1,0,0,0,0,0,0,0")]);
     let found =

@@ -1,8 +1,8 @@
 //! Tilesets of the map editor Tiled (.tsx) with wang sets, which Tiled also calls terrain sets.
 //!
-//! Each color of a wang set is a terrain class. If every tile has one color, the tiles are those of layers, and all
+//! Each color of a wang set is a terrain class. If every tile has only one color, the tiles belong to layers, and all
 //! wang sets of the file are used: their colors are the classes, bottom to top. If the first of them has tiles for its
-//! borders, there is a class `none` without tiles below it. If there are tiles of several colors, they are wang tiles
+//! borders, a class `none` without tiles is added below it. If there are tiles of several colors, they are wang tiles
 //! of one wang set.
 
 use std::path::Path;
@@ -20,7 +20,7 @@ use crate::tilemap::tileset::{Fit, Terrain, Tile, Tileset};
 /// Maximum number of terrain classes.
 const MAX_CLASSES: usize = 254;
 
-/// A wang set as the file has it. Colors are numbered from 1; 0 is none.
+/// A wang set as stored in the file. Colors are numbered from 1; 0 is none.
 struct Set {
     name: String,
     layout: Layout,
@@ -31,12 +31,12 @@ struct Set {
 /// Reads the tileset and its picture. `wang_set` names the wang set to use.
 ///
 /// # Errors
-/// If a file cannot be read, or has no such wang set, or its wang sets do not go together.
+/// If a file cannot be read, there is no such wang set, or the wang sets cannot be combined.
 pub fn load(path: &Path, wang_set: Option<&str>) -> Result<Loaded> {
     read(path, &text(path)?, wang_set, cut)
 }
 
-/// Reads the text of a tileset, whose picture is cut into tiles by `cut`.
+/// Reads the text of a tileset; `cut` cuts its picture into tiles.
 pub(super) fn read(
     path: &Path,
     text: &str,
@@ -67,7 +67,7 @@ pub(super) fn read(
         transparent: image.attribute("trans").and_then(color),
     };
     let Cut { count, columns, pixels } = cut(&picture, &grid)?;
-    // A picture may end with places for tiles that are not in use.
+    // A picture may end with unused positions for tiles.
     let count =
         if root.has_attribute("tilecount") { count.min(whole(&root, "tilecount").map_err(&failed)?) } else { count };
     let mut sets = sets(&root, count).map_err(&failed)?;
@@ -121,7 +121,7 @@ pub(super) fn read(
     Ok(Loaded { tileset: tileset.with_flips(flips, allows("preferuntransformed")), picture })
 }
 
-/// A whole number of an element.
+/// An integer attribute of an element.
 fn whole(node: &Node, name: &str) -> std::result::Result<usize, String> {
     let text = node.attribute(name).ok_or_else(|| format!("its `{}` has no `{name}`", node.tag_name().name()))?;
     let number = text.parse().ok().filter(|number| *number <= 1 << 24);
@@ -188,7 +188,7 @@ fn sets(root: &Node, count: usize) -> std::result::Result<Vec<Set>, String> {
     Ok(sets)
 }
 
-/// How often tiles are drawn, where it is not once.
+/// The weights of tiles, where they are not 1.
 fn weights(root: &Node) -> std::result::Result<Vec<(u32, f32)>, String> {
     let tiles = root.children().filter(|node| node.has_tag_name("tile"));
     let weight = |node: Node| {
@@ -202,7 +202,7 @@ fn weights(root: &Node) -> std::result::Result<Vec<(u32, f32)>, String> {
     tiles.filter_map(weight).collect()
 }
 
-/// The classes and tiles of a set with tiles of several colors. Tiles without a color somewhere are left out.
+/// The classes and tiles of a set with tiles of several colors. Tiles that lack a color somewhere are omitted.
 fn wang(set: &Set) -> (Vec<Terrain>, Vec<Tile>) {
     let directions = set.layout.directions();
     let is_whole = |id: &[u8; 8]| (0..8).all(|bit| directions >> bit & 1 == 0 || id[bit] != 0);
