@@ -5,9 +5,9 @@
 //! - [`dem`]: elevation models in any format, single or as mosaics, resampled to square cells in metres, with voids
 //!   filled.
 //! - [`palette`]: color ramps by name and from files.
-//! - [`mod@file`]: files written atomically, and the policy of what they may replace.
-//! - [`raster`]: a layer in memory or in pages on disk; both give the same bits.
-//! - [`read_at`]: bytes that are read by position, from any thread.
+//! - [`mod@file`]: atomic writing of files, and policies for replacing existing files.
+//! - [`raster`]: a layer in memory or in pages on disk; both give identical bits.
+//! - [`read_at`]: reading bytes by position, from any thread.
 //! - [`spool`]: byte buffers in memory or on disk; [`records`]: values in order, packed in such a buffer.
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! Opening files of others. Named pipes and devices may block or never end, so they are rejected.
+//! Opening of input files. Named pipes and devices may block or never end, so they are rejected.
 
 use std::io::Read;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::fs::{self, File};
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-/// Paths of descriptors that the parent process has opened, such as a shell's `<(command)`: opening them does not
+/// Paths of descriptors that the parent process has opened, such as a shell's `<(command)`. Opening them does not
 /// block.
 const INHERITED: [&str; 4] = ["/dev/fd/", "/dev/stdin", "/proc/self/fd/", "/proc/thread-self/fd/"];
 
@@ -24,7 +24,7 @@ pub fn regular(path: &Path, doing: &str) -> Result<File> {
 /// If it cannot be read, or is a folder, a named pipe or a device.
 pub fn bytes(path: &Path, doing: &str, most: u64) -> Result<Option<Vec<u8>>> {
     let mut bytes = Vec::new();
-    // Reads up to a limit instead of the stated length, because a pipe has none.
+    // Reads up to a limit instead of the stated length, because a pipe does not state one.
     let read = open(path, doing, true)?.take(most.saturating_add(1)).read_to_end(&mut bytes);
     read.map_err(|cause| Error::file(doing, path, &cause))?;
     Ok((bytes.len() as u64 <= most).then_some(bytes))

@@ -1,4 +1,4 @@
-//! A file that a recipe names, and its content.
+//! A file named by a recipe, and its content.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,7 +16,7 @@ pub struct FileRef {
     ground: Option<Arc<PreparedDem>>,
     drawing: Option<Arc<Drawing>>,
     kind: FileKind,
-    /// The location in the recipe's text that names it.
+    /// The location in the recipe's text where the file is named.
     location: Option<Box<Location>>,
 }
 
@@ -32,7 +32,7 @@ pub enum FileKind {
     Drawing(DrawingKind),
 }
 
-/// A grayscale picture named by a recipe: its content is numbers from 0 for black to 1 for white, one metre apart.
+/// A grayscale picture named by a recipe. Its content is numbers from 0 (black) to 1 (white), one metre apart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture(pub FileRef);
 
@@ -80,7 +80,7 @@ impl From<&str> for AreaFile {
     }
 }
 
-/// Equality compares the names of the files, not their content.
+/// Equality compares the names of files, not their content.
 impl PartialEq for FileRef {
     fn eq(&self, other: &FileRef) -> bool {
         self.path() == other.path()
@@ -116,7 +116,7 @@ impl FileRef {
         }
     }
 
-    /// The name in a recipe that may be stored in any folder.
+    /// The file name for a recipe that may be stored in any folder.
     #[must_use]
     pub fn text(&self) -> String {
         match &self.folder {
@@ -130,7 +130,7 @@ impl FileRef {
         self.folder = Some(folder.to_path_buf());
     }
 
-    /// The location in the recipe's text that names it, if there is one.
+    /// The location in the recipe's text where the file is named, if there is one.
     #[must_use]
     pub fn location(&self) -> Option<&Location> {
         self.location.as_deref()

@@ -7,8 +7,8 @@ use crate::format::dem::Georeference;
 const EQUATOR: f64 = 6_378_137.0;
 const SQUARED: f64 = 0.006_694_379_990_14;
 
-/// Latitude in degrees north at a position in metres of the lattice, if its map is in degrees or in a UTM zone (WGS 84,
-/// NAD 83 or NAD 27; the datum changes the latitude by less than 0.001 degrees).
+/// Latitude in degrees north at a position in metres of the lattice; `None` unless its map is in degrees or in a UTM
+/// zone (WGS 84, NAD 83 or NAD 27; the datum changes the latitude by less than 0.001 degrees).
 #[must_use]
 pub fn latitude(map: &Georeference, x: f64, y: f64) -> Option<f64> {
     let [east, north] = map.at(x, y);
@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn zones_and_degrees_tell_the_latitude() {
-        // Results of PROJ for these places.
+        // Expected values are results of PROJ for these positions.
         for (origin, epsg, expect) in [
             ([500_000.0, 5_000_000.0], 32632, 45.153_477),
             ([700_000.0, 4_100_000.0], 32612, 37.024_915),

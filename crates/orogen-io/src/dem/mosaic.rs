@@ -1,4 +1,4 @@
-//! Mosaics of several files of heights: a folder of georeferenced tiles, or the parts of a virtual raster.
+//! Mosaics of several files of heights: a folder of georeferenced tiles, or the sources of a virtual raster.
 
 use std::path::{Path, PathBuf};
 
@@ -26,7 +26,7 @@ struct Part {
     to: [usize; 2],
     /// Columns and rows; `None` means all.
     size: Option<[usize; 2]>,
-    /// What replaces the metadata of the file.
+    /// Metadata that replaces the metadata of the file.
     metadata: BandMetadata,
 }
 
@@ -47,8 +47,8 @@ pub fn tiles(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(tiles)
 }
 
-/// Reads a folder of tiles with the same cells and coordinate system. Where tiles overlap, the first by name with a
-/// height there is used. Areas without a tile have no height.
+/// Reads a folder of tiles with the same cells and coordinate system. Where tiles overlap, the first tile by name that
+/// has a height is used. Areas without a tile have no height.
 ///
 /// # Errors
 /// If the tiles do not fit together, one cannot be read, or their heights exceed the memory limit.
@@ -127,7 +127,8 @@ fn layout(tiles: &[(PathBuf, [usize; 2], Placement)]) -> std::result::Result<Lay
 /// Reads a virtual raster.
 ///
 /// # Errors
-/// If it is not a virtual raster, changes samples, a file of it cannot be read, or its heights exceed the memory limit.
+/// If it is not a virtual raster, if it changes samples, if one of its files cannot be read, or if its heights exceed
+/// the memory limit.
 pub fn virtual_raster(path: &Path, request: Request) -> Result<Dem> {
     let name = path.display().to_string();
     let refuse = |why: String| refused(&name, why);
@@ -166,7 +167,7 @@ fn parsed(path: &Path) -> Result<Virtual> {
     vrt::parse(&String::from_utf8_lossy(&bytes)).map_err(|why| refused(&name, why))
 }
 
-/// The file of a source of the virtual raster at `path`.
+/// The path of a source of the virtual raster at `path`.
 fn lies_at(path: &Path, source: &vrt::Source) -> PathBuf {
     match source.relative {
         true => path.parent().unwrap_or(Path::new("")).join(&source.path),
@@ -195,8 +196,8 @@ fn place(read: &Virtual) -> std::result::Result<Option<Placement>, String> {
     Ok(Some(Placement { origin: lattice.origin, step: lattice.step, unit, cell: None, keys }))
 }
 
-/// Composes parts in order, reading one file at a time: the memory of one file is needed beside the mosaic. Samples
-/// without a part have the height `absent`.
+/// Composes parts in order. Files are read one at a time, so the memory of one file is needed in addition to the
+/// mosaic. Samples without a part get the height `absent`.
 fn lay(
     name: &str,
     size: [u64; 2],
@@ -208,7 +209,7 @@ fn lay(
     let count = afford(size[0], size[1], request.allowed).map_err(|why| refused(name, why))?;
     let [width, height] = size.map(|side| side as usize);
     let left = request.allowed.saturating_sub(4 * count as u64);
-    // Marks samples without a part until all parts are there.
+    // Marks samples without a part until all parts are in place.
     const NO_PART: f32 = f32::INFINITY;
     let mut heights = samples::filled(NO_PART, count);
     let mut notes = Vec::new();
@@ -233,7 +234,7 @@ fn lay(
         for j in 0..size[1] {
             let source = (part.from[1] + j) * dem.width + part.from[0];
             let to = (part.to[1] + j) * width + part.to[0];
-            // A missing sample shows the part below. Where there is none, it must not become a height.
+            // A missing sample shows the part below. Where there is none, the mark must not become a height.
             samples::lay(&mut heights[to..to + size[0]], &dem.heights[source..source + size[0]], NO_PART);
         }
         notes.extend(dem.notes);
@@ -264,7 +265,7 @@ mod tests {
         write(folder.join("b.asc"), format!("{HEAD}7 -1 9\n")).unwrap();
         let below = source("SimpleSource", "a.asc", "");
         let above = source("ComplexSource", "b.asc", "<NODATA>-1</NODATA>");
-        // As GDAL reads them; a hole of the lowest source, which GDAL fills with 0, is missing.
+        // As GDAL reads them, except that a hole of the lowest source, which GDAL fills with 0, is missing.
         for (kind, sources, expect) in [
             ("Float32", format!("{below}{above}"), [7.0, 2.6, 9.0]),
             ("Float32", format!("{above}{below}"), [1.0, 2.6, 300.0]),
@@ -307,7 +308,7 @@ mod tests {
         assert!((place.origin[0] - 10.0).abs() < 1e-12 && (place.origin[1] - 45.0 - 1.0 / 1200.0).abs() < 1e-12);
         assert!((place.step[0] - 1.0 / 1200.0).abs() < 1e-15 && place.unit == Unit::Degrees);
         assert!((dem.heights[3] - 304.8006).abs() < 1e-4, "{:?}", dem.heights);
-        // The same numbers as degrees are not on Earth.
+        // The same numbers are not on Earth if they are degrees.
         write(folder.join("a.prj"), "Projection GEOGRAPHIC\nDatum WGS84\nUnits DD\nParameters\n").unwrap();
         let why = import::read(&folder.join("a.asc"), 1 << 20).unwrap_err().to_string();
         assert!(why.contains("a latitude of 162003 degrees is beyond the pole"), "{why}");

@@ -9,7 +9,8 @@ use crate::format::zarr::reader as zarr;
 use crate::fs;
 use orogen_grid::error::Result;
 
-/// Whether a path names heights: by its extension, without a band after a colon, or as a folder of tiles.
+/// Whether a path names heights: a file with a known extension, optionally with a band after a colon, or a folder of
+/// tiles.
 #[must_use]
 pub fn is_dem(path: &Path) -> bool {
     let (path, _) = split(path);
@@ -18,7 +19,7 @@ pub fn is_dem(path: &Path) -> bool {
         || fs::is_dir(&path) && (zarr::is_zarr(&path) || mosaic::tiles(&path).is_ok_and(|tiles| !tiles.is_empty()))
 }
 
-/// Splits a path from the band after it: `alps.tif:2`. If a file with the whole name exists, there is no band.
+/// Splits a path from the band after a colon: `alps.tif:2`. If a file with the whole name exists, there is no band.
 #[must_use]
 pub fn split(path: &Path) -> (PathBuf, Option<u32>) {
     let whole = || (path.to_path_buf(), None);
@@ -31,8 +32,8 @@ pub fn split(path: &Path) -> (PathBuf, Option<u32>) {
     }
 }
 
-/// All files that a path of heights is read from: itself, the tiles of a folder, the sources of a virtual raster. Empty
-/// if it cannot be read.
+/// All files that heights at a path are read from: the file itself, the tiles of a folder, the sources of a virtual
+/// raster. Empty if the path cannot be read.
 #[must_use]
 pub fn files(path: &Path) -> Vec<PathBuf> {
     let (path, _) = split(path);

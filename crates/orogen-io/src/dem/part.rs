@@ -1,4 +1,4 @@
-//! Parts of a real place: a window of a large file is read without the rest of it, with the same bits.
+//! Parts of a real place: reads a window of a large file without the rest of it, with bit-identical heights.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ use orogen_grid::grid::{Grid, Window};
 const BLOCK: u32 = 6;
 const NEXT: u32 = 2;
 
-/// What is known of a file without its samples.
+/// Properties of a file that are known without its samples.
 struct Outline {
     /// Columns and rows of the file.
     size: [usize; 2],
@@ -65,9 +65,10 @@ impl PreparedDem {
         }))
     }
 
-    /// The part of a file inside `window`, whose cell is that of its lattice, with the bits of the whole
-    /// ([`PreparedDem::read`]). Only blocks of the file that touch it are read, and more around holes: as far as the
-    /// heights that fill them. `None` if the file cannot be read in parts, or has no samples in the window.
+    /// The part of a file inside `window`, whose cell must be that of the file's lattice. Heights are bit-identical to
+    /// those of the whole file ([`PreparedDem::read`]). Only blocks of the file that overlap the window are read, and
+    /// around holes as many more as filling them needs. `None` if the file cannot be read in parts, or has no samples
+    /// in the window.
     ///
     /// # Errors
     /// The errors of [`PreparedDem::read`].
@@ -96,7 +97,7 @@ impl PreparedDem {
     }
 }
 
-/// Differs from that of a whole place with the same heights.
+/// The hash of a part. It differs from the hash of a whole place with the same heights.
 fn part_hash(grid: &Grid) -> [u8; 32] {
     let mut digest = Sha256::new();
     digest.update(hash(grid));
@@ -104,7 +105,7 @@ fn part_hash(grid: &Grid) -> [u8; 32] {
     digest.finalize().into()
 }
 
-/// The samples of a part of a file, without holes, and how many there were: filled as they are in the whole.
+/// The samples of a part of a file with holes filled as in the whole file, and the number of holes.
 fn complete(path: &Path, size: [usize; 2], part: Part, request: Request) -> Result<(Dem, usize)> {
     let read = |part: Part| open::read(path, request.with_part(Some(part)));
     let dem = read(part)?;
@@ -129,11 +130,11 @@ fn complete(path: &Path, size: [usize; 2], part: Part, request: Request) -> Resu
     }
 }
 
-/// The blocks of `side` by `side` samples of a raster that a part touches, and one more on each side.
+/// The blocks of `side` by `side` samples of a raster that a part overlaps, and one more on each side.
 ///
-/// [`fill`] takes a missing sample from the means of blocks. If all blocks around have a height, those beyond are not
-/// read for a sample that is at least one block from the edge: each level of the pyramid reads one mean further than
-/// the next coarser one, which together is less than a block.
+/// [`fill`] fills a missing sample from the means of blocks. If all blocks around have a height, a sample at least one
+/// block from the edge does not depend on blocks further away: each level of the pyramid reads one mean further than
+/// the next coarser one, which adds up to less than a block.
 fn around(part: Part, size: [usize; 2], side: usize) -> Part {
     let from = part.from.map(|at| (at / side).saturating_sub(1) * side);
     let end = |k: usize| ((part.end()[k].div_ceil(side) + 1) * side).min(size[k]);

@@ -16,7 +16,7 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::Grid;
 use orogen_grid::words::{count, percent};
 
-/// Default memory limit of heights, in bytes.
+/// Default memory limit for heights, in bytes.
 pub const DEFAULT_MEMORY: u64 = 4 << 30;
 
 /// Heights of a real place on a lattice of square cells in metres, without holes.
@@ -25,9 +25,9 @@ pub const DEFAULT_MEMORY: u64 = 4 << 30;
 pub struct PreparedDem {
     /// The heights; the north-west corner of the place is at the origin.
     pub grid: Grid,
-    /// Columns and rows of the whole place, of which the heights may be a part ([`PreparedDem::part`]).
+    /// Columns and rows of the whole place; the heights may be a part of it ([`PreparedDem::part`]).
     pub size: [usize; 2],
-    /// Number of samples without a height in what was read, which were interpolated.
+    /// Number of samples that were read without a height; they were filled.
     pub missing: usize,
     /// Number of samples that were read.
     pub samples: usize,
@@ -41,8 +41,8 @@ pub struct PreparedDem {
 
 impl PreparedDem {
     /// Reads heights by path ([`open::read`]), fills holes ([`fill`]) and resamples degrees and oblong cells to square
-    /// cells in metres ([`Layout`]). `cell` is the distance between samples in metres; it replaces the file's own, or
-    /// is needed if the file has none. `request` limits the memory of the heights.
+    /// cells in metres ([`Layout`]). `cell` is the distance between samples in metres; it replaces the file's own, and
+    /// is required if the file has none. `request` limits the memory of the heights.
     ///
     /// # Errors
     /// If the file cannot be read, is too large, or the distance between its samples is unknown.
@@ -52,7 +52,8 @@ impl PreparedDem {
         PreparedDem::of(dem, cell, request.allowed).map_err(|why| refused(&name, why))
     }
 
-    /// Reads a grayscale picture: 0 for black, 1 for white, pixels one metre apart, in at most `allowed` bytes.
+    /// Reads a grayscale picture: 0 for black, 1 for white, pixels one metre apart. Takes at most `allowed` bytes of
+    /// memory.
     ///
     /// # Errors
     /// If the file cannot be read, is not a grayscale .png, or is too large.
@@ -95,13 +96,13 @@ impl PreparedDem {
         Ok(PreparedDem { grid, size: layout.size, missing, samples, georeference, notes, hash })
     }
 
-    /// Whether its heights are those of a part of the place.
+    /// Whether the heights are only a part of the place.
     #[must_use]
     pub fn is_part(&self) -> bool {
         [self.grid.width(), self.grid.height()] != self.size
     }
 
-    /// Memory that it takes, in bytes.
+    /// Memory of the heights, in bytes.
     #[must_use]
     pub fn memory(&self) -> u64 {
         self.grid.data().len() as u64 * 4

@@ -64,8 +64,8 @@ impl Layout {
     }
 
     /// Map units per metre of the lattice, for a DEM with these steps in map units and in metres. Sides that count as
-    /// equal keep their own sizes, so that no sample moves on the map; only differences below a thousandth of a cell
-    /// over the whole raster are left out.
+    /// equal keep their own sizes, so that samples keep their positions on the map; only differences below a thousandth
+    /// of a cell over the whole raster are ignored.
     #[must_use]
     pub fn per_metre(&self, steps: [f64; 2], metres: [f64; 2]) -> [f64; 2] {
         let longest = self.size[0].max(self.size[1]) as f64;
@@ -82,12 +82,12 @@ impl Layout {
         Georeference {
             origin: place.origin,
             per_metre: self.per_metre(place.step, metres),
-            // Degrees remain degrees even if their datum is unknown.
+            // Degrees remain degrees, even if their datum is unknown.
             keys: place.keys.clone().or((place.unit == Unit::Degrees).then(|| keys::of_epsg(USER_DEFINED, true))),
         }
     }
 
-    /// The message that samples are resampled, if they are.
+    /// The message that samples are resampled; `None` if they are not.
     #[must_use]
     pub fn note(&self, steps: [f64; 2], degrees: bool) -> Option<String> {
         let what = if degrees { "its degrees, at the middle latitude cells" } else { "its cells" };
@@ -103,7 +103,7 @@ impl Layout {
         self.ratio == [1.0; 2]
     }
 
-    /// The samples of a DEM of `size` columns and rows that a part of the lattice is made of.
+    /// The samples of a DEM of `size` columns and rows that a part of the lattice is computed from.
     #[must_use]
     pub fn sources(&self, size: [usize; 2], part: Part) -> Part {
         if self.is_square() {
@@ -122,7 +122,7 @@ impl Layout {
         self.apply_part(dem, [0; 2], Part::whole(self.size))
     }
 
-    /// The heights of a part of the lattice, of a part of a DEM without holes that starts at column and row `from`.
+    /// The heights of a part of the lattice, from a part of a DEM without holes that starts at column and row `from`.
     #[must_use]
     pub fn apply_part(&self, dem: Dem, from: [usize; 2], part: Part) -> Option<Grid> {
         let at = |[x, y]: [usize; 2]| [x as i64, y as i64];

@@ -1,4 +1,4 @@
-//! Files are written atomically.
+//! Atomic writing of files.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -31,8 +31,8 @@ pub fn write_whole<'a>(output: &Output, body: impl FnOnce(&mut dyn Write) -> io:
     stage(output, body)?.commit()
 }
 
-/// Writes a temporary file beside `output` with the content that `body` writes, and syncs it. [`Staged::commit`] puts
-/// it in place.
+/// Writes a temporary file in the folder of `output` with the content that `body` writes, and syncs it.
+/// [`Staged::commit`] puts it in place.
 ///
 /// A pipe or device is written directly.
 pub fn stage<'a>(output: &Output, body: impl FnOnce(&mut dyn Write) -> io::Result<()> + 'a) -> Result<Staged> {
@@ -45,13 +45,13 @@ pub fn replace_whole<'a>(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::R
     stage_through(path, None, |file| Box::new(file), Box::new(body))?.commit()
 }
 
-/// [`replace_whole`] without a wait for the disk: after a failure of the system the file may be damaged. For files that
-/// contain checksums and can be made again.
+/// Like [`replace_whole`], but does not wait for the disk: after a crash of the system the file may be damaged. For
+/// files that contain checksums and can be made again.
 pub fn replace_unsynced<'a>(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()> + 'a) -> Result<()> {
     stage_as(false, path, None, |file| Box::new(file), Box::new(body))?.commit()
 }
 
-/// Puts files that belong together in place; none of them if one may not be replaced.
+/// Puts files that belong together in place, or none of them if one may not be replaced.
 pub fn commit(files: Vec<Staged>) -> Result<()> {
     files.iter().try_for_each(Staged::check)?;
     files.into_iter().try_for_each(Staged::commit)
@@ -81,7 +81,7 @@ pub struct Staged {
     output: Option<Output>,
     /// The temporary file and the target's real path; `None` for a pipe or device, which was written directly.
     file: Option<(Temporary, PathBuf)>,
-    /// Whether the file survives a failure of the system.
+    /// Whether the file survives a crash of the system.
     synced: bool,
 }
 
@@ -131,7 +131,8 @@ enum Destination {
     Stream,
 }
 
-/// What writes the content of a file. In a box, so that all files share one copy of the code that stages them.
+/// The function that writes the content of a file. It is boxed, so that all files share one copy of the code that
+/// stages them.
 type Body<'a> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a>;
 
 /// [`stage`], with `wrap` around the file, through which tests inject faults.
@@ -162,14 +163,14 @@ fn stage_as(
         Destination::File { real, permissions } => {
             let (temporary, file) = match Temporary::create(folder(&real)) {
                 Ok(created) => created,
-                // The folder is missing or does not take files.
+                // The folder does not exist or does not accept files.
                 Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
                     return check_folder(folder(&real)).and(Err(failed(cause)));
                 }
                 Err(cause) => return Err(failed(cause)),
             };
             if let Some(permissions) = permissions {
-                // Some file systems do not support permissions; that is no reason to fail.
+                // Some file systems do not support permissions; errors are ignored.
                 let _ = file.set_permissions(permissions);
             }
             fill(path, wrap(&file), body)?;
@@ -182,7 +183,7 @@ fn stage_as(
     Ok(Staged { path: path.to_path_buf(), output: output.cloned(), file, synced })
 }
 
-/// Determines what `path` is, and rejects what cannot be written.
+/// Determines what `path` is, and rejects paths that cannot be written.
 fn target(path: &Path) -> Result<Destination> {
     let refuse = |why: &str| Error::new(ErrorKind::File, format!("cannot write {}: {why}", path.display()));
     let ends_in_separator = path.to_string_lossy().ends_with(std::path::is_separator);
@@ -305,7 +306,7 @@ mod tests {
         }
     }
 
-    /// Accepts `left` bytes, then fails as a full disk does.
+    /// Accepts `left` bytes, then fails like a full disk.
     struct Full<'f> {
         file: &'f File,
         left: usize,
@@ -341,7 +342,7 @@ mod tests {
         write_whole(&path, |out| out.write_all(b"old")).unwrap();
         let text = b"a body of some length, written in pieces";
         for n in 0..text.len() {
-            // Pieces with other lengths than the buffer, so that their boundaries differ.
+            // Pieces whose lengths differ from that of the buffer, so that their boundaries differ.
             let error = write_through(
                 &path,
                 |file| Box::new(Full { file, left: n }),
@@ -451,7 +452,7 @@ mod tests {
         assert_eq!(fs::read(&path).unwrap(), b"old");
     }
 
-    /// /proc rejects new files even from root, who ignores the permissions of ordinary folders.
+    /// /proc rejects new files even from root, which ignores the permissions of ordinary folders.
     #[cfg(target_os = "linux")]
     #[test]
     fn a_folder_that_takes_no_files_is_a_sentence() {

@@ -7,7 +7,7 @@ use crate::fs;
 /// The identity of a file, independent of names and links.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FileId {
-    /// The path with links resolved: the identity on systems without file numbers, and the name in messages elsewhere.
+    /// The path with links resolved: the identity on systems without file numbers, and the name in messages on others.
     real: PathBuf,
     /// Device and file number, which hard links share.
     #[cfg(all(unix, feature = "fs"))]

@@ -1,4 +1,4 @@
-//! Detection of the kind of a file by its first bytes.
+//! Detection of the kind of a file from its first bytes.
 
 use std::io::{self, Read};
 use std::path::Path;
@@ -7,10 +7,11 @@ use super::mark;
 use crate::fs::{self, File};
 use crate::samples;
 
-/// Bytes that are read: enough for the head of a recipe, and for the longest title before a document's first element.
+/// Number of bytes that are read: enough for the head of a recipe, and for the longest title before a document's first
+/// element.
 const HEAD: u64 = 64 << 10;
 
-/// Maximum length of a recipe whose mark is checked; longer ones count as written by hand.
+/// Maximum length of a recipe whose mark is checked; longer recipes count as written by hand.
 const LONGEST_RECIPE: u64 = 16 << 20;
 
 /// A kind of file with a signature.
@@ -89,15 +90,15 @@ const KINDS: &[Kind] = &[
     },
 ];
 
-/// Kinds of text that people also write by hand, with the name of Orogen's own files.
+/// Kinds of text that people also write by hand, with the name for files written by Orogen.
 const SIGNED: &[(&str, &str)] = &[
     ("json", "JSON of Orogen"),
     ("obj", "an Orogen mesh"),
-    // The mark is one that Tiled removes when it saves: maps that were edited are kept.
+    // Tiled removes the mark when it saves, so edited maps are kept.
     ("tmx", "a map of Orogen"),
     ("tmj", "a map of Orogen"),
     ("tsx", "a tileset of Orogen"),
-    // LDtk and Godot remove it, too.
+    // LDtk and Godot also remove it.
     ("ldtk", "a project of Orogen"),
     ("tres", "a resource of Orogen"),
     ("tscn", "a scene of Orogen"),
@@ -181,7 +182,7 @@ impl Found {
     }
 
     /// The reason why a file named `path` may not replace this content: the kind that is to be written; `None` if it
-    /// may. `new` is the new content, if it is known already; it decides if the file extension does not.
+    /// may. `new` is the new content, if it is already known; it decides if the file extension does not.
     pub fn differs(self, path: &Path, new: Option<Found>) -> Option<&'static str> {
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         let extension = extension.as_str();
@@ -213,7 +214,7 @@ fn trimmed(head: &[u8]) -> &[u8] {
     head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start()
 }
 
-/// Whether the first line is that of a table of points, or numbers of classes.
+/// Whether the first line is the header of a table of points, or a list of class numbers.
 fn is_table(head: &[u8]) -> bool {
     let line = head.split(|byte| *byte == b'\n').next().unwrap_or_default();
     let is_number = |byte: &u8| byte.is_ascii_digit() || *byte == b',';

@@ -6,7 +6,7 @@
 use orogen_grid::hex;
 use sha2::{Digest, Sha256};
 
-/// The text before the digits, and after them.
+/// The text of the mark before the hexadecimal digits.
 const BEFORE: &str = "# Orogen replaces this file only while it is unchanged: SHA-256 ";
 
 /// Adds the mark to a text: after the first line if that is a comment, otherwise at the top.

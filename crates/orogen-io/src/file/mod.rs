@@ -1,14 +1,14 @@
 //! Writing files: atomically, and only over files that may be replaced.
 //!
-//! [`write_whole`] writes a temporary file beside the target, syncs it, renames it over the target and syncs the
-//! folder. Readers of the target see either the old file or the new one. After any failure the old file still exists
-//! and the temporary one is removed. [`stage`] does everything except the rename, for files that belong together: stage
-//! them all, then [`commit`] them. If the disk fills up, the old set stays complete. [`check_folder`] checks early
-//! whether files can be written.
+//! [`write_whole`] writes a temporary file in the folder of the target, syncs it, renames it over the target and syncs
+//! the folder. Readers of the target see either the old file or the new one. After any failure the old file still
+//! exists and the temporary one is removed. [`stage`] does everything except the rename, for files that belong
+//! together: stage them all, then [`commit`] them. If the disk fills up, the old set stays complete. [`check_folder`]
+//! checks early whether files can be written.
 //!
-//! All of them write to an [`Output`], which only an [`OutputPolicy`] makes. The policy rejects a file that the work
-//! reads, a recipe written by hand, and a file of another kind than the one that is written. It checks when the output
-//! is made, before the work begins, and again when the file is put in place.
+//! All of them write to an [`Output`], which only an [`OutputPolicy`] creates. The policy never replaces a file that
+//! the work reads, a recipe written by hand, or a file of another kind than the new one. It checks this when the output
+//! is created, before the work begins, and again when the file is put in place.
 //!
 //! Existing targets:
 //!

@@ -1,4 +1,4 @@
-//! Folders of results.
+//! Folders for results.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ impl OutputFolder {
     /// Checks that files can be written to the folder at `path`, before the work begins; creates it if needed.
     ///
     /// # Errors
-    /// If it cannot be created, or takes no files.
+    /// If it cannot be created, or does not accept files.
     pub fn ready(path: &Path) -> Result<OutputFolder> {
         let missing = |path: &&Path| !path.as_os_str().is_empty() && fs::symlink_metadata(path).is_err();
         let made = path.ancestors().take_while(missing).map(Path::to_path_buf).collect::<Vec<_>>();

@@ -7,7 +7,7 @@ use super::identity::FileId;
 use super::kind::Found;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-/// Treatment of existing files.
+/// How existing files are treated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Existing {
@@ -22,8 +22,8 @@ pub enum Existing {
 
 /// The files that an output may replace.
 ///
-/// In no case does it replace a file that the work reads (also under another name, through symbolic or hard links), or
-/// a recipe written or changed by hand.
+/// A file that the work reads (also under another name, through symbolic or hard links), or a recipe written or changed
+/// by hand, is never replaced.
 ///
 /// ```
 /// use orogen_io::file::{Existing, OutputPolicy, write_whole};
@@ -99,13 +99,13 @@ impl Output {
         &self.policy
     }
 
-    /// Checks that the existing file may be replaced; `new` is the written file that is to replace it, if there is one
-    /// yet.
+    /// Checks that the existing file may be replaced. `new` is the written file that will replace it, if it already
+    /// exists.
     #[doc(hidden)]
     pub fn check(&self, new: Option<&Path>) -> Result<()> {
         let path = &self.path;
         let refuse = |why: String| Err(Error::new(ErrorKind::File, format!("cannot write {}: {why}", path.display())));
-        // Other objects are rejected or written directly when they are opened.
+        // Paths that are not files are rejected or written directly when they are opened.
         let Some(there) = FileId::of(path) else { return Ok(()) };
         if self.policy.inputs.iter().any(|input| input.is(&there)) {
             return refuse("this command reads that file; choose another name".into());
@@ -209,7 +209,7 @@ mod tests {
                 assert_eq!(done.is_ok(), allowed, "{existing:?}: {done:?} over {text}");
             }
         }
-        // Also with the file name of a picture.
+        // Also if its extension is that of a picture.
         let path = folder.with("a.png", "orogen = 1\n");
         assert!(refusal(&OutputPolicy::new(Existing::Replace), &path).contains("by hand"));
     }

@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Affine(pub [f64; 6]);
 
-/// Coordinates beyond this are damage: the circumference of the Earth is 4e10 mm.
+/// Larger coordinates are treated as damage: the circumference of the Earth is 4e10 mm.
 const MAX_COORDINATE: f64 = 1e12;
 
 /// The samples of a north-up raster.
@@ -19,8 +19,8 @@ pub struct Lattice {
 }
 
 impl Affine {
-    /// From six numbers in GDAL's order, which refer to pixel corners: west, column step, 0, north, 0, row step
-    /// (negative if rows run southward).
+    /// Creates a transform from six numbers in GDAL's order, which refer to pixel corners: west, column step, 0, north,
+    /// 0, row step (negative if rows run southward).
     #[must_use]
     pub fn of_geotransform([c, a, b, f, d, e]: [f64; 6]) -> Affine {
         Affine([a, b, c + 0.5 * (a + b), d, e, f + 0.5 * (d + e)])
@@ -33,8 +33,8 @@ impl Affine {
         [c - 0.5 * (a + b), a, b, f - 0.5 * (d + e), d, e]
     }
 
-    /// The transform of another raster, whose column is at `scale[0] * column + offset[0]` of this one; likewise for
-    /// rows.
+    /// The transform of another raster, whose column k is at column `scale[0] * k + offset[0]` of this one; likewise
+    /// for rows.
     #[must_use]
     pub fn resampled(&self, scale: [f64; 2], offset: [f64; 2]) -> Affine {
         let [a, b, c, d, e, f] = self.0;
@@ -42,7 +42,7 @@ impl Affine {
         Affine([a * x, b * y, a * dx + b * dy + c, d * x, e * y, d * dx + e * dy + f])
     }
 
-    /// The position of a raster with `rows` rows.
+    /// The position of a raster of `rows` rows.
     ///
     /// # Errors
     /// A message if the raster is rotated or mirrored, or the numbers are not valid coordinates.

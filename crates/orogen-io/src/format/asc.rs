@@ -1,8 +1,8 @@
 //! ESRI ASCII grid, `.asc`: a header of keys and numbers, then the heights as text, row by row from the north.
 //!
 //! Keys read: `ncols`, `nrows`, `xllcorner` or `xllcenter`, `yllcorner` or `yllcenter`, `cellsize` (or GDAL's `dx` and
-//! `dy`), `nodata_value`, in any case and order. The format does not store its unit: without a `.prj` beside it, the
-//! unit is [guessed](Unit::guess).
+//! `dy`), `nodata_value`, in any case and order. The format does not store its unit: without a `.prj` file, the unit is
+//! [guessed](Unit::guess).
 
 use std::io::{self, Write};
 
@@ -62,12 +62,12 @@ pub fn read(input: &mut dyn Input, name: &str, allowed: u64) -> Result<Dem> {
 struct Head {
     columns: Option<u64>,
     rows: Option<u64>,
-    /// The coordinate of the lower left pixel, and whether it is that of the pixel's center.
+    /// The coordinate of the lower left pixel, and whether it refers to the pixel's center.
     west: Option<(f64, bool)>,
     south: Option<(f64, bool)>,
     step: [Option<f64>; 2],
     nodata: Option<f64>,
-    /// Whether the nodata value was stated, also as `null`: none.
+    /// Whether the nodata value was stated; the value `null` states that there is none.
     has_nodata: bool,
 }
 
@@ -86,7 +86,7 @@ pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Pla
 fn read_head(words: &mut Words) -> std::result::Result<(Head, [u64; 2], Option<String>), String> {
     let mut head = Head::default();
     words.skip_mark()?;
-    // The header ends with the first word that is a number in place of a key.
+    // The header ends where a number is found instead of a key.
     let mut first = words.next()?;
     while let Some(word) = first.as_deref()
         && word.starts_with(|c: char| c.is_ascii_alphabetic())

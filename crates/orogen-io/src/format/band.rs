@@ -1,5 +1,5 @@
-//! A band's nodata, scale, offset and unit, which files and their sidecars state, and the conversion of stored samples
-//! to heights in metres.
+//! Nodata, scale, offset and unit of a band, as stated by files and their sidecars, and the conversion of stored
+//! samples to heights in metres.
 
 use roxmltree::Node;
 
@@ -7,7 +7,7 @@ use super::conversion::{Conversion, Linear};
 use super::crs::unit::length_of_name;
 use super::xml;
 
-/// What a file, a virtual raster or a sidecar states about a band.
+/// Properties of a band that a file, a virtual raster or a sidecar states.
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 #[must_use]
@@ -22,18 +22,18 @@ pub struct BandMetadata {
     pub unit: Option<String>,
     /// Metres per unit of scaled samples, if the unit is known without a name.
     pub metres: Option<f64>,
-    /// The least and the greatest whole number of a virtual raster's type, to which stored samples are rounded.
+    /// The minimum and the maximum integer of a virtual raster's type, to which stored samples are rounded.
     pub whole: Option<[f64; 2]>,
 }
 
 impl BandMetadata {
-    /// The children `NoDataValue`, `Scale`, `Offset` and `UnitType` of a band in GDAL's XML.
+    /// Reads the children `NoDataValue`, `Scale`, `Offset` and `UnitType` of a band in GDAL's XML.
     pub fn of_xml(band: Node) -> BandMetadata {
         let text = |name: &str| {
             let text = band.children().find(|node| node.has_tag_name(name)).and_then(|node| node.text());
             text.map(str::trim).filter(|text| !text.is_empty())
         };
-        // Text that is not a number must not pass as "not stated".
+        // Text that is not a number must not count as "not stated".
         let number = |name: &str| text(name).map(|text| text.parse().unwrap_or(f64::NAN));
         BandMetadata {
             nodata: text("NoDataValue").and_then(|text| text.parse().ok()).into_iter().collect(),
@@ -45,8 +45,8 @@ impl BandMetadata {
         }
     }
 
-    /// The metadata of the band with index `band`, from 0, in the text of GDAL's TIFF tag 42112. A text that is not XML
-    /// states nothing.
+    /// The metadata of the band with index `band`, from 0, in the text of GDAL's TIFF tag 42112; empty if the text is
+    /// not XML.
     pub fn of_tiff(metadata: &str, band: usize) -> BandMetadata {
         let Ok(document) = xml::parse(metadata, false) else { return BandMetadata::default() };
         let text = |role: &str| {
@@ -67,16 +67,16 @@ impl BandMetadata {
         }
     }
 
-    /// Whether it states nothing.
+    /// Whether nothing is stated.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         *self == BandMetadata::default()
     }
 
-    /// What `other` states in place of what this states. All nodata values apply.
+    /// Replaces what `other` states too. Nodata values are combined.
     pub fn replaced_by(mut self, other: &BandMetadata) -> BandMetadata {
         self.nodata.extend(&other.nodata);
-        // A scale without an offset has an offset of 0, not that of the other source.
+        // A scale without an offset has an offset of 0, not the offset of the other source.
         if other.scale.is_some() || other.offset.is_some() {
             (self.scale, self.offset) = (other.scale, other.offset);
         }
@@ -93,8 +93,8 @@ impl BandMetadata {
         self
     }
 
-    /// The conversion of samples. `vertical` are the metres per unit of the vertical coordinate system, which applies
-    /// if the band states no unit.
+    /// The conversion of samples. `vertical` is the number of metres per unit of the vertical coordinate system, which
+    /// applies if the band states no unit.
     ///
     /// # Errors
     /// A message if the scale or the offset is not a number.
@@ -154,7 +154,7 @@ mod tests {
 
     #[test]
     fn samples_of_virtual_rasters_are_rounded_to_their_type() {
-        // As GDAL copies floats to bytes.
+        // Rounded like floats that GDAL copies to bytes.
         let band =
             BandMetadata { whole: Some([0.0, 255.0]), scale: Some(2.0), nodata: vec![7.0], ..Default::default() };
         let mut conversion = band.conversion(None).unwrap();

@@ -1,4 +1,4 @@
-//! Formats by the first bytes of a file, for files whose extension is that of another format.
+//! Detection of formats by the first bytes of a file, for files whose extension belongs to another format.
 
 use std::path::Path;
 
@@ -8,14 +8,14 @@ use crate::open;
 /// Number of bytes that are compared.
 const LENGTH: usize = 64;
 
-/// How a file of a format is used instead.
+/// Advice for a file of a known format.
 #[derive(Debug, Clone, Copy)]
 enum Advice {
-    /// Give it one of these extensions.
+    /// Give the file one of these extensions.
     Rename(&'static [&'static str]),
-    /// This command; `FILE` stands for its name.
+    /// Run this command; `FILE` stands for the file's name.
     Command(&'static str),
-    /// This sentence.
+    /// Follow this sentence.
     Sentence(&'static str),
 }
 
@@ -23,7 +23,7 @@ use Advice::{Command, Rename, Sentence};
 
 const GDAL: Advice = Command("gdal_translate FILE out.tif");
 
-/// The first bytes of a file, its format, and what to do with it.
+/// The first bytes of a file, its format, and the advice.
 const FORMATS: &[(&[u8], &str, Advice)] = &[
     (b"II\x2a\0", "a TIFF", Rename(&["tif", "tiff"])),
     (b"MM\0\x2a", "a TIFF", Rename(&["tif", "tiff"])),
@@ -65,15 +65,16 @@ const FORMATS: &[(&[u8], &str, Advice)] = &[
     (b"<html", "a web page, perhaps the error of a download", Sentence("download it again")),
 ];
 
-/// What a file with these first bytes is, if its extension is that of another format; `None` if it is not known.
+/// The message about a file with these first bytes, if its extension belongs to another format; `None` if the format is
+/// not known.
 fn of_bytes(path: &Path, head: &[u8]) -> Option<String> {
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
-    // A recipe may begin with any name.
+    // A recipe may begin with any text.
     if matches!(extension.as_deref(), Some("toml" | "json")) {
         return None;
     }
     let (first, format, advice) = FORMATS.iter().find(|(first, ..)| head.starts_with(first))?;
-    // Their readers say more.
+    // The readers of these formats give better messages.
     if matches!(
         (extension.as_deref(), *first),
         (Some("nc" | "cdf" | "grd"), b"\x89HDF\r\n\x1a\n") | (Some("zip"), b"PK\x03\x04")
@@ -91,8 +92,8 @@ fn of_bytes(path: &Path, head: &[u8]) -> Option<String> {
     }
 }
 
-/// What a file is by its first bytes, if its extension is that of another format; `None` if that is not known, or if it
-/// cannot be read.
+/// The message about the format of a file, if its extension belongs to another format; `None` if the format is not
+/// known, or the file cannot be read.
 #[must_use]
 pub fn of_file(path: &Path) -> Option<String> {
     let mut file = open::regular(path, "read").ok()?;

@@ -9,8 +9,8 @@ use orogen_grid::contour::levels::is_index;
 use orogen_grid::contour::line::Line;
 use orogen_grid::grid::Window;
 
-/// Writes lines as an SVG of the window's extent, in metres, north up. Each height has a group with its name; the lines
-/// are in paths of bounded length. Index contours, every fifth of `interval`, are thicker.
+/// Writes lines as an SVG of the window's extent, in metres, north up. Each height is a group with its name; the lines
+/// are in paths of bounded length. Index contours, which are every fifth of `interval`, are thicker.
 ///
 /// # Errors
 /// Errors of `out`.

@@ -8,7 +8,7 @@ use orogen_grid::error::{Error, ErrorKind};
 
 pub use super::number::append_samples;
 
-/// Writes the points of a layer: the columns `x` (east), `y` (north) and `z`, then its attributes; lines end with a
+/// Writes the points of a layer: the columns `x` (east), `y` (north) and `z`, then the attributes; lines end with a
 /// line feed. Coordinates are rounded to `decimals` decimals, heights to millimetres. A missing value is empty.
 ///
 /// Fails if `out` fails, or if a feature is not a point.

@@ -47,13 +47,13 @@ impl Part {
         [self.from[0] + self.size[0], self.from[1] + self.size[1]]
     }
 
-    /// Whether it has samples, all within a raster of this size.
+    /// Whether the part is not empty and lies within a raster of this size.
     #[must_use]
     pub fn is_within(&self, size: [usize; 2]) -> bool {
         (0..2).all(|k| self.size[k] > 0 && self.from[k].checked_add(self.size[k]).is_some_and(|end| end <= size[k]))
     }
 
-    /// The same samples where rows are counted from the south of a raster with `height` rows.
+    /// The same samples with rows counted from the south of a raster with `height` rows.
     #[must_use]
     pub fn from_south(self, height: usize) -> Part {
         Part { from: [self.from[0], height - self.end()[1]], ..self }
@@ -69,7 +69,7 @@ impl From<u64> for Request {
 orogen_noise::builder!(Request: with_band(band: Option<u32>), with_allowed(allowed: u64), with_part(part: Option<Part>));
 
 impl Request {
-    /// Heights of up to this many bytes, of a file with one band.
+    /// A request for the heights of a file with one band, up to this many bytes.
     #[must_use]
     pub const fn new(allowed: u64) -> Request {
         Request { band: None, allowed, part: None }
@@ -147,7 +147,7 @@ impl Georeference {
         [(east - self.origin[0]) / self.per_metre[0], (self.origin[1] - north) / self.per_metre[1]]
     }
 
-    /// The same map, with the lattice's origin moved to this position of the world.
+    /// The same map for a lattice in which the origin of this one is at (x, y), in metres east and south.
     #[must_use]
     pub fn moved(&self, x: f64, y: f64) -> Georeference {
         Georeference { origin: self.at(-x, -y), ..self.clone() }
@@ -164,7 +164,7 @@ impl Georeference {
         self.keys.as_ref().is_some_and(keys::is_named)
     }
 
-    /// Whether the units are so long that they can only be degrees, whatever the keys say.
+    /// Whether the units are so long that they can only be degrees, whatever the keys state.
     #[must_use]
     pub fn counts_degrees(&self) -> bool {
         self.per_metre[0] < 1e-3
@@ -179,13 +179,13 @@ impl Georeference {
         }
     }
 
-    /// The unit of its coordinates, if it has keys that state it.
+    /// The unit of the coordinates; `None` if the keys do not state it.
     #[must_use]
     pub fn unit(&self) -> Option<Unit> {
         keys::unit(self.keys.as_ref()?).ok()
     }
 
-    /// Whether its coordinates are degrees of longitude and latitude.
+    /// Whether the coordinates are degrees of longitude and latitude.
     #[must_use]
     pub fn is_degrees(&self) -> bool {
         self.unit() == Some(Unit::Degrees)
@@ -221,7 +221,7 @@ impl Georeference {
 }
 
 impl Dem {
-    /// A DEM of the samples read; missing ones become NaN.
+    /// A DEM of the samples that were read; missing ones become NaN.
     ///
     /// # Errors
     /// If no sample has a height.
@@ -232,7 +232,7 @@ impl Dem {
         }
     }
 
-    /// A part of a raster, which may be without any height; `place` is that of the raster.
+    /// A part of a raster, which may have no height at all; `place` is the position of the whole raster.
     #[must_use]
     pub fn part(part: Part, heights: Vec<f32>, place: Option<Placement>) -> Dem {
         let place = place.map(|mut place| {
@@ -259,7 +259,7 @@ impl Dem {
         Ok(Dem { notes: self.notes, ..Dem::part(part, heights, self.place) })
     }
 
-    /// A DEM of the samples read, and whether there is any height.
+    /// A DEM of the samples that were read, and whether it has any height.
     fn checked(size: [usize; 2], mut heights: Vec<f32>, place: Option<Placement>) -> (Dem, bool) {
         let [width, height] = size;
         let found = samples::keep_heights(&mut heights);
@@ -273,12 +273,12 @@ impl Dem {
     }
 }
 
-/// An error about a rejected file, with its name.
+/// An error that rejects a file, with the file's name.
 pub fn refused(name: &str, why: impl AsRef<str>) -> Error {
     Error::new(ErrorKind::File, format!("cannot read {name}: {}", why.as_ref()))
 }
 
-/// The message for a part that is not within a raster.
+/// The message for a part that is outside a raster.
 pub(super) fn beyond(size: [usize; 2]) -> String {
     format!("it has {} x {} samples, and others were asked for", size[0], size[1])
 }

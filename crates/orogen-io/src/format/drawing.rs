@@ -14,7 +14,7 @@ use crate::open;
 /// Maximum length of a file, in bytes.
 pub const MAX_LENGTH: u64 = 32 << 20;
 
-/// Memory for reading, as a multiple of the length of a file.
+/// Memory for reading, in bytes per byte of a file.
 const MEMORY_PER_BYTE: u64 = 16;
 
 /// A format of vector files.
@@ -27,7 +27,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format of a file with this name.
+    /// The format of a file with this name; `None` if its extension is not supported.
     #[must_use]
     pub fn of_path(path: &Path) -> Option<Format> {
         match path.extension()?.to_ascii_lowercase().to_str()? {
@@ -43,15 +43,15 @@ impl Format {
 pub struct Drawing {
     /// The lines or the boundaries.
     pub outlines: Vec<Outline>,
-    /// SHA-256 of what was read.
+    /// SHA-256 of the outlines.
     pub hash: [u8; 32],
 }
 
 impl Drawing {
-    /// Reads the lines or the areas of a file; reading takes at most about `allowed` bytes.
+    /// Reads the lines or the areas of a file. Takes about `allowed` bytes of memory at most.
     ///
     /// # Errors
-    /// If the file cannot be read, is too large, is not valid, or has none.
+    /// If the file cannot be read, is too large, is not valid, or does not contain any.
     pub fn read(path: &Path, kind: DrawingKind, allowed: u64) -> Result<Drawing> {
         let name = path.display().to_string();
         let Some(format) = Format::of_path(path) else {
@@ -74,10 +74,10 @@ impl Drawing {
         Drawing::parse(&text, format, kind).map_err(|why| refused(&name, why))
     }
 
-    /// The lines or the areas of a text.
+    /// Reads the lines or the areas of a text.
     ///
     /// # Errors
-    /// A message if it is not valid, or has none.
+    /// A message if it is not valid, or does not contain any.
     pub fn parse(text: &str, format: Format, kind: DrawingKind) -> std::result::Result<Drawing, String> {
         let mut collector = Collector::new(kind);
         let text = text.trim_start_matches('\u{feff}');
@@ -101,7 +101,7 @@ impl Drawing {
         Ok(Drawing { hash: outlines::hash(&collector.outlines), outlines: collector.outlines })
     }
 
-    /// Memory that it takes, in bytes.
+    /// Memory of the drawing, in bytes.
     #[must_use]
     pub fn memory(&self) -> u64 {
         let pieces: usize = self.outlines.iter().map(|outline| outline.pieces.len()).sum();

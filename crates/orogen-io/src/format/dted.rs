@@ -1,4 +1,4 @@
-//! DTED (MIL-PRF-89020B), `.dt0`, `.dt1` and `.dt2`: one degree of WGS 84, whole metres, columns from the west, each
+//! DTED (MIL-PRF-89020B), `.dt0`, `.dt1` and `.dt2`: one degree of WGS 84, whole metres; columns from the west, each
 //! from the south. -32767 is nodata; negative heights have a sign bit.
 
 use std::io::Read;
@@ -73,7 +73,7 @@ fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String>
     Dem::new([width, height], heights, Some(place))
 }
 
-/// Degrees of a text such as 0070000E.
+/// Degrees from a text such as 0070000E.
 fn angle(text: &str) -> std::result::Result<f64, String> {
     let invalid = || format!("its corner `{}` is not an angle", text.escape_debug());
     let part = |from: usize, to: usize| text.get(from..to).and_then(|part| part.parse::<u32>().ok()).map(f64::from);

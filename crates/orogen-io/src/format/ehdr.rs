@@ -1,10 +1,9 @@
-//! ESRI's headerless rasters, `.bil` and `.flt`, with the text file NAME.hdr beside them: one band, rows from the
-//! north.
+//! ESRI's headerless rasters, `.bil` and `.flt`, with a text file NAME.hdr: one band, rows from the north.
 //!
 //! Keys read: `nrows`, `ncols`, `nbits`, `pixeltype`, `byteorder`, `skipbytes`, `bandrowbytes`, `totalrowbytes`,
 //! `ulxmap` and `ulymap` (the center of the first pixel) with `xdim` and `ydim`, or `xllcorner`, `yllcorner` and
-//! `cellsize` as in `.asc`, `zunits` and `nodata`. The defaults are GDAL's: `.bil` has 8 bits, whole numbers without a
-//! sign unless nodata is negative; `.flt` has floats of 32 bits.
+//! `cellsize` as in `.asc`, `zunits` and `nodata`. The defaults are GDAL's: `.bil` has integers of 8 bits, which are
+//! unsigned unless nodata is negative; `.flt` has floats of 32 bits.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -20,8 +19,8 @@ use orogen_grid::error::Result;
 /// Maximum length of a header, in bytes.
 pub const MAX_LENGTH: u64 = 1 << 16;
 
-/// Reads a raster. `header` is the text of the file NAME.hdr, `is_float` whether it is a `.flt`, `metadata` what GDAL's
-/// sidecar states of the band, `vertical` metres per unit of the vertical system of a `.prj`.
+/// Reads a raster. `header` is the text of the file NAME.hdr, `is_float` is true for a `.flt`, `metadata` is what
+/// GDAL's sidecar states about the band, and `vertical` is metres per unit of the vertical system of a `.prj`.
 ///
 /// # Errors
 /// If there is no header, it is not valid, the file does not have the stated length, or heights take more than
@@ -38,7 +37,7 @@ pub fn read(
     open(input, header, is_float, metadata, vertical, allowed).map_err(|why| refused(name, why))
 }
 
-/// The keys of a header, in small letters, with their values.
+/// The keys of a header, in lower case, with their values.
 struct Header(BTreeMap<String, String>);
 
 impl Header {
@@ -70,7 +69,7 @@ impl Header {
         is_whole.then_some(Some(number as u64)).ok_or_else(|| format!("`{key}` in its .hdr is {number}"))
     }
 
-    /// The position of `rows` rows, if it is stated.
+    /// The position of `rows` rows, if the header states it.
     fn place(&self, rows: u64) -> std::result::Result<Option<Placement>, String> {
         let cell = self.number("cellsize")?;
         let step = [self.number("xdim")?.or(cell), self.number("ydim")?.or(cell)];

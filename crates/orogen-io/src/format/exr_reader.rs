@@ -1,7 +1,8 @@
 //! Reading heights from OpenEXR pictures: scan lines of one part, uncompressed or with RLE, ZIPS or ZIP.
 //!
-//! "OpenEXR File Layout" (openexr.com). Heights are in one channel: the only one; otherwise `Y`, `height` or `Z`;
-//! otherwise R, if R, G and B are equal; or the channel chosen by its number in the order of names. Samples are metres.
+//! "OpenEXR File Layout" (openexr.com). Heights are in the channel that is chosen by its number in the order of names.
+//! By default they are in the only channel, in `Y`, `height` or `Z`, or in R if R, G and B are equal. Samples are
+//! metres.
 
 use super::dem::{Dem, Input, Request, afford, afford_beside, length, refused};
 use super::exr_block::{damaged, take, unpack};
@@ -24,7 +25,7 @@ pub fn read(input: &mut dyn Input, name: &str, sidecar: &Sidecar, request: Reque
     open(input, sidecar, request).map_err(|why| refused(name, why))
 }
 
-/// The type of a channel's samples: size, and whether they are floats.
+/// The type of a channel's samples: their size, and whether they are floats.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Sample {
     Whole,
@@ -151,7 +152,7 @@ fn seek(input: &mut dyn Input, at: u64) -> std::result::Result<(), String> {
     input.seek(std::io::SeekFrom::Start(at)).map(|_| ()).map_err(|cause| cause.to_string())
 }
 
-/// Reads exactly `count` bytes; allocates only for bytes that exist.
+/// Reads exactly `count` bytes, and allocates memory only for bytes that exist.
 fn read_some(input: &mut dyn Input, count: u64, out: &mut Vec<u8>) -> std::result::Result<(), String> {
     use std::io::Read;
     input.take(count).read_to_end(out).map_err(|cause| cause.to_string())?;

@@ -25,7 +25,7 @@ pub struct FeatureLayer {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Crs<'a> {
-    /// Metres east and north of the origin of an invented world.
+    /// Metres east and north of the origin of a world that is not a real place.
     Local,
     /// The coordinate system of a map, with or without an EPSG code.
     Map(&'a Georeference),
@@ -41,13 +41,13 @@ pub enum Definition {
     Wkt(String),
     /// Coordinates in an unknown system.
     Unknown {
-        /// Whether they are longitude and latitude in degrees.
+        /// Whether the coordinates are longitude and latitude in degrees.
         degrees: bool,
     },
 }
 
 impl Crs<'_> {
-    /// The definition for files.
+    /// The definition to write to files.
     #[must_use]
     pub fn definition(&self) -> Definition {
         let map = match self {
@@ -63,7 +63,7 @@ impl Crs<'_> {
 }
 
 impl FeatureLayer {
-    /// Converts metres east and south of the world's origin to map coordinates: those of `map`, otherwise metres east
+    /// Converts metres east and south of the world's origin to coordinates of `map`, or without a map to metres east
     /// and north.
     pub fn place(&mut self, map: Option<&Georeference>) {
         features::place(&mut self.features, map.map(|map| (map.origin, map.per_metre)));
@@ -85,7 +85,7 @@ pub const LOCAL_WKT: &str = concat!(
     r#"AXIS["easting",east],AXIS["northing",north],LENGTHUNIT["metre",1]]"#
 );
 
-/// What the tests of this crate and of those above it share.
+/// Helpers for the tests of this crate and of crates that depend on it.
 #[doc(hidden)]
 pub mod samples {
     use super::*;

@@ -12,7 +12,7 @@ const MAGIC: [u8; 8] = [0x66, 0x67, 0x62, 0x03, 0x66, 0x67, 0x62, 0x01];
 const POINT: u8 = 1;
 const LINE: u8 = 2;
 
-/// Writes a layer with coordinates of `crs`. Features are in the order of a Hilbert curve.
+/// Writes a layer with coordinates of `crs`. Features are written in the order of a Hilbert curve.
 ///
 /// Fails if `out` fails.
 pub fn write(out: &mut dyn Write, layer: &FeatureLayer, crs: Crs) -> io::Result<()> {

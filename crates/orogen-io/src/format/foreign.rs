@@ -1,8 +1,9 @@
-//! Formats of heights that are not read, by their extensions, and how to convert them.
+//! Unsupported formats of heights, by their extensions, and how to convert them.
 
 use std::path::Path;
 
-/// Extensions, the name of the format, and the command that converts a file to GeoTIFF; `FILE` stands for its name.
+/// Extensions, the name of the format, and the command that converts a file to GeoTIFF; `FILE` stands for the file's
+/// name.
 const FORMATS: &[(&[&str], &str, &str)] = &[
     (&["nc4"], "NetCDF-4", "gdal_translate NETCDF:FILE:VARIABLE out.tif"),
     (&["h5", "hdf5", "he5", "hdf", "hdf4"], "HDF", "gdal_translate HDF5:FILE://DATASET out.tif"),
@@ -30,8 +31,8 @@ const FORMATS: &[(&[&str], &str, &str)] = &[
     (&["tar", "tgz", "7z", "rar"], "an archive", "tar -xf FILE"),
 ];
 
-/// Why a file of this name is not read, and the command that converts it; `None` if its extension is not that of a
-/// known format.
+/// The reason why a file with this name cannot be read, and the command that converts it; `None` if its extension does
+/// not belong to a known format.
 #[must_use]
 pub fn foreign(path: &Path) -> Option<String> {
     let extension = path.extension()?.to_str()?.to_ascii_lowercase();
@@ -40,7 +41,7 @@ pub fn foreign(path: &Path) -> Option<String> {
     Some(format!("its format, {format} (.{extension}), is not supported; convert it, for example with {command}"))
 }
 
-/// The message for a file whose content is of such a format, whatever its name says.
+/// The message for a file with content in such a format, whatever its extension.
 pub(super) fn of_name(path: &Path, format: &str, command: &str) -> String {
     let command = with_name(path, command);
     format!("its content is {format}, which is not supported; convert it, for example with {command}")

@@ -8,9 +8,9 @@ use super::features::{Crs, Definition, FeatureLayer};
 pub use super::number::{decimals, number};
 
 /// Writes a layer as a feature collection, one feature per line. `step` is the distance between samples in the unit of
-/// the coordinates, which are rounded to at most a thousandth of it; heights are rounded to millimetres.
+/// the coordinates; coordinates are rounded to at most a thousandth of it, heights to millimetres.
 ///
-/// RFC 7946 requires longitude and latitude (WGS 84); such coordinates are written as they are. For other systems the
+/// RFC 7946 requires longitude and latitude (WGS 84); such coordinates are written unchanged. For other systems the
 /// file has the `crs` member of GeoJSON 2008, which GDAL and QGIS read, also for local metres (as WKT).
 ///
 /// Fails if `out` fails.

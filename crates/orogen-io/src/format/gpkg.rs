@@ -6,7 +6,7 @@ use super::features::{Crs, Definition, FeatureLayer, FieldType, GeometryType, LO
 use super::gpkg_rows;
 use super::sqlite::{Column, Database};
 
-/// "GPKG", and version 1.3.
+/// The application number "GPKG", and version 1.3.
 const APPLICATION: u32 = 0x4750_4B47;
 const VERSION: u32 = 10_300;
 
@@ -90,7 +90,7 @@ fn spatial_ref_sys(database: &mut Database, srs: i64, definition: &Definition) -
             Definition::Wkt(wkt) => {
                 row("Coordinate system of the input", srs, "NONE", wkt, "coordinate system without EPSG code")
             }
-            // Readers look up the code and ignore the definition.
+            // Readers use the code and ignore the definition.
             Definition::Epsg(_, Some(wkt)) => row(&name, srs, "EPSG", wkt, "as the EPSG registry defines it"),
             _ => row(&name, srs, "EPSG", "undefined", "as the EPSG registry defines it"),
         });

@@ -26,7 +26,7 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, allowed: u64) -> std::result::
         (ColorType::Grayscale, BitDepth::Sixteen) => 2,
         (ColorType::Rgb, BitDepth::Eight) if encoding.is_some() => 3,
         (ColorType::Rgba, BitDepth::Eight) if encoding.is_some() => 4,
-        // With the heights of black and white, gray is expected.
+        // If the heights of black and white are given, gray is expected.
         (ColorType::Rgb | ColorType::Rgba, BitDepth::Eight) if sidecar.low.is_none() => {
             return Err(needs("the encoding of heights in its colors, `encoding` (\"terrarium\" or \"terrain-rgb\")"));
         }
@@ -111,7 +111,7 @@ mod tests {
             assert!(why.contains("low and high"), "{why}");
             for n in 0..bytes.len() - 12 {
                 match read(&mut Cursor::new(&bytes[..n]), "a.png", &sidecar, 1 << 20) {
-                    // Only checksums are missing.
+                    // Only checksums were cut off.
                     Ok(cut) => assert!(cut == dem && n + 24 > bytes.len(), "{n}"),
                     Err(error) => assert!(error.to_string().starts_with("cannot read a.png: "), "{n}: {error}"),
                 }

@@ -1,4 +1,4 @@
-//! The list of all readers of heights.
+//! The registry of readers of heights.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -36,7 +36,7 @@ fn extension(path: &Path) -> Option<String> {
     Some(path.extension()?.to_str()?.to_ascii_lowercase())
 }
 
-/// Whether a file's size and position can be read without its heights, as tiles require.
+/// Whether a file's size and position can be read without its heights, as mosaics of tiles require.
 #[must_use]
 pub fn has_head(path: &Path) -> bool {
     extension(path).is_some_and(|extension| matches!(extension.as_str(), "tif" | "tiff" | "asc" | "hgt"))
@@ -83,12 +83,12 @@ pub fn read(path: &Path, request: impl Into<Request>) -> Result<Dem> {
     parse(&mut file, &name, &extension(path).unwrap_or_default(), sidecar, request).map_err(|error| named(path, error))
 }
 
-/// The error for a file that cannot be read: if its content is of another format than its name says, that is why.
+/// The error for a file that cannot be read. If its content is in another format than its extension, the error says so.
 fn named(path: &Path, error: Error) -> Error {
     content::of_file(path).map_or(error, |why| refused(&path.display().to_string(), why))
 }
 
-/// [`read`] with metadata of the band that replaces what the file and its sidecars state, as virtual rasters do.
+/// [`read`] with metadata of the band that replaces the metadata of the file and its sidecars, as in virtual rasters.
 ///
 /// # Errors
 /// The errors of [`read`].
@@ -105,7 +105,7 @@ pub fn read_with(path: &Path, request: Request, metadata: &BandMetadata) -> Resu
         .map_err(|error| named(path, error))
 }
 
-/// An error for a file whose extension is not that of a format for heights.
+/// An error if a file's extension does not belong to a format for heights.
 fn known(path: &Path, name: &str) -> Result<()> {
     if is_dem(path) {
         return Ok(());
@@ -140,7 +140,7 @@ pub fn parse(
 
 fn band(input: &mut dyn Input, name: &str, extension: &str, sidecar: Option<Sidecar>, request: Request) -> Result<Dem> {
     let mut told = sidecar.unwrap_or_default();
-    // What stands beside a file applies to all of it.
+    // Sidecars of a file apply to all of it.
     let is_tiff = matches!(extension, "tif" | "tiff");
     if let Some(part) = request.part
         && !(is_read_in_parts(extension) && (is_tiff || told.mask.is_none()))
@@ -153,7 +153,7 @@ fn band(input: &mut dyn Input, name: &str, extension: &str, sidecar: Option<Side
         request.choose(1).map_err(|why| refused(name, why))?;
     }
     if matches!(extension, "png" | "r16" | "r32") {
-        // These compare nodata with stored samples.
+        // These readers compare nodata with stored samples.
         told.nodata = told.nodata.or(told.band(request.band).nodata.first().copied());
     }
     let mut dem = match extension {
@@ -197,7 +197,7 @@ fn band(input: &mut dyn Input, name: &str, extension: &str, sidecar: Option<Side
             "png" | "r16" | "bil" | "flt" => BandMetadata::default(),
             _ => told.band(request.band).with_nodata(told.nodata),
         };
-        // The reader of headers converts their heights itself.
+        // The reader of headers converts heights itself.
         let vertical = told.vertical.filter(|_| !matches!(extension, "png" | "r16" | "bil" | "flt"));
         convert(&mut dem, &told, request, &metadata, vertical).map_err(|why| refused(name, why))?;
     }
@@ -211,7 +211,7 @@ fn band(input: &mut dyn Input, name: &str, extension: &str, sidecar: Option<Side
     Ok(dem)
 }
 
-/// Checks that no row is beyond a pole; a sample may be on it.
+/// Checks that no row is beyond a pole; a sample may be at a pole.
 fn on_earth(place: &Placement, rows: usize) -> std::result::Result<(), String> {
     let Some(degrees) = place.unit.degrees() else { return Ok(()) };
     let [north, step] = [place.origin[1], place.step[1]].map(|at| at * degrees);
@@ -225,7 +225,7 @@ fn on_earth(place: &Placement, rows: usize) -> std::result::Result<(), String> {
     }
 }
 
-/// Applies the mask beside a file, and the nodata, scale, offset and unit that GDAL's sidecar and a vertical coordinate
+/// Applies the separate mask file, and the nodata, scale, offset and unit that GDAL's sidecar and a vertical coordinate
 /// system state.
 fn convert(
     dem: &mut Dem,

@@ -1,5 +1,5 @@
-//! File formats, one per file. Writers stream to any [`Write`](std::io::Write) and hold a few rows at a time. Readers
-//! of heights ([`import`]) check sizes stated in a file against its length before they allocate memory.
+//! File formats, one per module. Writers stream to any [`Write`](std::io::Write) and keep only a few rows in memory.
+//! Readers of heights ([`import`]) check sizes stated in a file against its length before they allocate memory.
 
 #[doc(hidden)]
 pub mod affine;

@@ -5,8 +5,8 @@ use std::io::{Error as IoError, ErrorKind, Read, Result as IoResult, Seek, SeekF
 use super::dem::Input;
 use orogen_grid::error::Result;
 
-/// Runs a reader on an input. If the input failed, the reader's error gets that failure as its source: readers report
-/// most problems as text.
+/// Runs a reader on an input. If the input failed, the failure becomes the source of the reader's error, because
+/// readers report most problems as text.
 pub fn noted<T>(input: &mut dyn Input, read: impl FnOnce(&mut dyn Input) -> Result<T>) -> Result<T> {
     let mut noted = Noted { inner: input, failure: None };
     read(&mut noted).map_err(|error| match &noted.failure {
@@ -22,7 +22,7 @@ struct Noted<'a> {
 }
 
 impl Noted<'_> {
-    /// Keeps a copy, which has the number or the message of the failure.
+    /// Keeps a copy with the number or the message of the failure.
     fn note<T>(&mut self, result: IoResult<T>) -> IoResult<T> {
         if let Err(cause) = &result
             && cause.kind() != ErrorKind::Interrupted
@@ -82,7 +82,7 @@ mod tests {
             let source = error.source().and_then(|source| source.downcast_ref::<IoError>());
             assert_eq!(source.and_then(IoError::raw_os_error), Some(5), "{extension}: {error}");
         }
-        // What is damaged has no such source.
+        // Errors about damaged content have no such source.
         let error = parse(&mut Cursor::new(vec![0; 100]), "a file", "tif", None, 1 << 20).unwrap_err();
         assert!(error.source().is_none(), "{error}");
     }

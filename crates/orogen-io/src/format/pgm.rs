@@ -1,11 +1,11 @@
 //! PGM (Netpbm, `P5`): an uncompressed grayscale picture of 8 or 16 bits.
 //!
-//! A text header (size and the largest level), then the levels, row by row; 16-bit levels are big-endian.
+//! A text header (size and maximum level), then the levels, row by row; 16-bit levels are big-endian.
 
 use std::io::{self, Write};
 
-/// Writes the header of a picture whose largest level is 255 or 65535. `notes` become comments, one line each. All
-/// levels must follow, as one byte, or as two bytes in big-endian order.
+/// Writes the header of a picture whose maximum level is 255 or 65535. `notes` become comments, one line each. All
+/// levels must follow, as one byte or as two bytes in big-endian order.
 pub fn write_head(out: &mut dyn Write, size: [usize; 2], most: u16, notes: &[String]) -> io::Result<()> {
     writeln!(out, "P5")?;
     for note in notes {

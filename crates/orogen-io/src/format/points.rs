@@ -1,4 +1,4 @@
-//! Points and lines with names, from CSV and GeoJSON.
+//! Named points and lines from CSV and GeoJSON.
 
 use std::path::Path;
 
@@ -18,9 +18,9 @@ const MAX_LENGTH: u64 = 4 << 20;
 pub struct NamedPoint {
     /// The name, if it has one.
     pub name: Option<String>,
-    /// What it is, such as `summit`, if that is stated.
+    /// The kind, such as `summit`, if it is stated.
     pub kind: Option<String>,
-    /// Its height in metres, if that is stated.
+    /// The height in metres, if it is stated.
     pub height: Option<f64>,
     /// East and north, or longitude and latitude.
     pub at: [f64; 2],
@@ -31,9 +31,9 @@ pub struct NamedPoint {
 pub struct NamedLine {
     /// The name, if it has one.
     pub name: Option<String>,
-    /// What it is, such as `river`, if that is stated.
+    /// The kind, such as `river`, if it is stated.
     pub kind: Option<String>,
-    /// Positions, likewise.
+    /// Positions: east and north, or longitude and latitude.
     pub points: Vec<[f64; 2]>,
 }
 
@@ -42,9 +42,9 @@ pub struct NamedLine {
 pub struct NamedPoints {
     /// The points, in the order of the file.
     pub points: Vec<NamedPoint>,
-    /// The lines, likewise; only GeoJSON has any.
+    /// The lines, in the order of the file; only GeoJSON has any.
     pub lines: Vec<NamedLine>,
-    /// The EPSG code of their coordinate system, if the file states it.
+    /// The EPSG code of the coordinate system, if the file states it.
     pub epsg: Option<u16>,
 }
 
@@ -56,11 +56,11 @@ const KIND: &[&str] = &["kind", "type", "class", "natural", "waterway", "place"]
 const HEIGHT: &[&str] = &["height", "elevation", "ele", "z"];
 
 impl NamedPoints {
-    /// Reads at most `most` points and lines of a file; its extension is its format: .csv, .txt or .tsv, .geojson or
-    /// .json.
+    /// Reads at most `most` points and lines of a file. Its extension determines the format: .csv, .txt or .tsv,
+    /// .geojson or .json.
     ///
     /// # Errors
-    /// If the file cannot be read, is not valid, or has none or too many points.
+    /// If the file cannot be read, is not valid, has no points, or has too many.
     pub fn read(path: &Path, most: usize) -> Result<NamedPoints> {
         let name = path.display().to_string();
         let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
@@ -84,11 +84,11 @@ impl NamedPoints {
         }
     }
 
-    /// [Reads](NamedPoints::read) points that must be in the coordinate system of a map, if both are known. `of` names
-    /// what the map is of.
+    /// [Reads](NamedPoints::read) points that must be in the coordinate system of a map, if both systems are known.
+    /// `of` says what the map belongs to, for messages.
     ///
     /// # Errors
-    /// Those of [`read`](NamedPoints::read), or if the points are in another coordinate system.
+    /// The errors of [`read`](NamedPoints::read), or if the points are in another coordinate system.
     pub fn read_on(path: &Path, map: Option<&Georeference>, of: &str, most: usize) -> Result<NamedPoints> {
         let found = NamedPoints::read(path, most)?;
         match (found.epsg, map.and_then(Georeference::epsg)) {
@@ -104,8 +104,8 @@ impl NamedPoints {
         }
     }
 
-    /// The points of comma-separated values (RFC 4180), also with semicolons or tabs between them. The first line names
-    /// the columns; without names they are east, north and, if there is one more, the name.
+    /// Reads the points of comma-separated values (RFC 4180), or of values separated by semicolons or tabs. The first
+    /// line names the columns; without names they are east, north and, if there is a third one, the name.
     ///
     /// # Errors
     /// A message with the line that is not valid.
@@ -145,9 +145,9 @@ impl NamedPoints {
         Ok(NamedPoints { points, ..NamedPoints::default() })
     }
 
-    /// The points and lines of GeoJSON: `Point`, `MultiPoint`, `LineString` and `MultiLineString`, with the property
-    /// `name`, `label`, `title`, `station` or `id` as the name, `kind`, `type`, `class`, `natural`, `waterway` or
-    /// `place` as the kind, and `height`, `elevation`, `ele` or `z` as the height.
+    /// Reads the points and lines of GeoJSON: `Point`, `MultiPoint`, `LineString` and `MultiLineString`. The name is
+    /// the property `name`, `label`, `title`, `station` or `id`; the kind is `kind`, `type`, `class`, `natural`,
+    /// `waterway` or `place`; the height is `height`, `elevation`, `ele` or `z`.
     ///
     /// # Errors
     /// A message if it is not valid.
@@ -202,7 +202,7 @@ impl NamedPoints {
     }
 }
 
-/// Which columns hold what.
+/// The meaning of the columns.
 #[derive(Clone, Copy)]
 struct Columns {
     east: usize,
@@ -248,7 +248,7 @@ fn text_of(value: &Value) -> Option<String> {
     }
 }
 
-/// The records of a text that are not empty, each with the number of its line.
+/// The non-empty records of a text, each with its line number.
 fn records(text: &str, separator: char) -> std::result::Result<Vec<(usize, Vec<String>)>, String> {
     let mut records = Vec::new();
     let (mut record, mut value) = (Vec::new(), String::new());

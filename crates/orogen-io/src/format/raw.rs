@@ -10,7 +10,7 @@ use crate::samples;
 use orogen_grid::error::Result;
 use orogen_grid::grid::Grid;
 
-/// Bytes that are read at a time.
+/// Number of bytes that are read at a time.
 const PIECE: usize = 1 << 16;
 
 /// The type of the samples.

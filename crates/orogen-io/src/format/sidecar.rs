@@ -3,12 +3,11 @@
 //! Keys: `width`, `height` (samples); `cell` (metres between samples); `low`, `high` (heights in metres of 0 and 65535,
 //! or of 0 and 255); `byte_order` ("little", the default, or "big"); `first_row` ("north", the default, or "south");
 //! `nodata` (the value of missing samples); `encoding` ("terrarium" or "terrain-rgb", for heights in the colors of a
-//! picture); `geotransform` (six numbers in GDAL's order: west edge, column step, 0,
-//! north edge, 0, row step, which is negative); `crs` ("EPSG:32632"); `wkt` (the coordinate system as well-known text).
-//! Other keys are ignored, so that the `summary.json` that `orogen generate` writes beside `height.png` is a sidecar
-//! too.
+//! picture); `geotransform` (six numbers in GDAL's order: west edge, column step, 0, north edge, 0, row step, which is
+//! negative); `crs` ("EPSG:32632"); `wkt` (the coordinate system as well-known text). Other keys are ignored, so the
+//! `summary.json` that `orogen generate` writes with `height.png` is also a sidecar.
 //!
-//! Missing properties of the position are taken from a world file, a `.prj` and an `.aux.xml` beside the file.
+//! Missing properties of the position are taken from a world file, a `.prj` and an `.aux.xml` with the same name.
 
 use std::path::{Path, PathBuf};
 
@@ -53,7 +52,7 @@ pub struct Sidecar {
     pub nodata: Option<f64>,
     /// The encoding of heights in the colors of a picture: "terrarium" or "terrain-rgb".
     pub encoding: Option<String>,
-    /// The type of the samples as exports state it; of a picture, its encoding.
+    /// The type of the samples in exports; for a picture, its encoding.
     pub sample: Option<String>,
     /// The transform from columns and rows to coordinates, in GDAL's order, for pixel corners.
     pub geotransform: Option<[f64; 6]>,
@@ -61,25 +60,25 @@ pub struct Sidecar {
     pub crs: Option<String>,
     /// The coordinate system as well-known text.
     pub wkt: Option<String>,
-    /// The coordinate system in other sidecars, for a format that stores its position itself.
+    /// The coordinate system from other sidecars, for a format that stores its position itself.
     #[serde(skip)]
     pub keys: Option<GeoKeys>,
-    /// Metres per unit of the vertical coordinate system in other sidecars, if they have one.
+    /// Metres per unit of the vertical coordinate system from other sidecars, if they state one.
     #[serde(skip)]
     pub vertical: Option<f64>,
-    /// Whether the coordinates of the file are seconds of arc, as a `.prj` of ARC/INFO states.
+    /// Whether the coordinates of the file are in seconds of arc, as stated by an ARC/INFO `.prj`.
     #[serde(skip)]
     pub is_in_seconds: bool,
-    /// What GDAL's sidecar states about each band, in the order of the bands.
+    /// The metadata of each band in GDAL's sidecar, in the order of the bands.
     #[serde(skip)]
     pub bands: Vec<BandMetadata>,
-    /// The text of NAME.hdr beside a `.bil` or `.flt`.
+    /// The text of the NAME.hdr file of a `.bil` or `.flt`.
     #[serde(skip)]
     pub header: Option<String>,
-    /// What replaces the metadata of the band that is read, as virtual rasters state it.
+    /// Metadata that replaces the metadata of the band that is read, as in virtual rasters.
     #[serde(skip)]
     pub replaced: BandMetadata,
-    /// The mask file beside the file: NAME.EXT.msk.
+    /// The separate mask file: NAME.EXT.msk.
     #[serde(skip)]
     pub mask: Option<PathBuf>,
     /// Messages about sidecars that could not be interpreted.
@@ -88,7 +87,7 @@ pub struct Sidecar {
 }
 
 impl Sidecar {
-    /// The content of all sidecars of `path`; `None` if there are none.
+    /// Reads all sidecars of `path`; `None` if there are none.
     ///
     /// # Errors
     /// If a sidecar cannot be read.
@@ -127,7 +126,7 @@ impl Sidecar {
             let notes = text(&notes, aux_xml::MAX_LENGTH, aux_xml::parse)?;
             all.geotransform = all.geotransform.or(notes.affine.map(|affine| affine.geotransform()));
             all.vertical = all.vertical.or(notes.system.as_deref().and_then(vertical::metres_of_text));
-            // An unknown system in GDAL's sidecar is no reason to reject the heights.
+            // An unknown system in GDAL's sidecar is not a reason to reject the heights.
             all.keys = all.keys.or(notes.system.and_then(|system| keys::of_text(&system).ok()));
             all.bands = notes.bands;
         }
@@ -172,7 +171,7 @@ impl Sidecar {
         }
     }
 
-    /// The samples, row-major from the north.
+    /// Reorders samples row-major from the north.
     ///
     /// # Errors
     /// If `first_row` is neither "north" nor "south".
@@ -199,14 +198,14 @@ impl Sidecar {
         Encoding::ALL.into_iter().find(|encoding| stated(encoding.name()))
     }
 
-    /// What GDAL's sidecar states about a band, from 1, or what replaces it.
+    /// The metadata of a band, from 1, in GDAL's sidecar, or the metadata that replaces it.
     pub fn band(&self, band: Option<u32>) -> BandMetadata {
         let index = band.unwrap_or(1).saturating_sub(1) as usize;
         self.bands.get(index).cloned().unwrap_or_default().replaced_by(&self.replaced)
     }
 
     /// The heights, in metres, of a sample of 0 and of the largest possible one, `most`: `low` and `high`, otherwise
-    /// those that the scale, offset and unit in GDAL's sidecar give.
+    /// the result of the scale, offset and unit in GDAL's sidecar.
     ///
     /// # Errors
     /// If neither is stated, or a virtual raster replaces the metadata of a file with `low` and `high`.
@@ -223,7 +222,7 @@ impl Sidecar {
         }
     }
 
-    /// The position of `rows` rows of samples: on their map; if only the cell is known, from the origin.
+    /// The position of `rows` rows of samples on their map; if only the cell is known, from the origin.
     ///
     /// # Errors
     /// A message if the position is not valid.
@@ -239,7 +238,7 @@ impl Sidecar {
         Ok(Some(Placement { origin: lattice.origin, step: lattice.step, unit, cell: self.cell, keys }))
     }
 
-    /// The coordinate system of the sidecar, or of another one beside the file.
+    /// The coordinate system of this sidecar, or of another sidecar of the file.
     fn system(&self) -> std::result::Result<Option<GeoKeys>, String> {
         if let Some(wkt) = &self.wkt {
             return keys::of_wkt(wkt).map(Some).map_err(|why| format!("the `wkt` beside it is not understood: {why}"));
@@ -280,20 +279,20 @@ pub fn aux_xml(path: &Path) -> PathBuf {
     beside(path, ".aux.xml")
 }
 
-/// The sidecar that belongs to this file only, not to other files called NAME: NAME.r16.json.
+/// The sidecar that belongs only to this file, not to other files called NAME: NAME.r16.json.
 #[must_use]
 pub fn own(path: &Path) -> PathBuf {
     beside(path, ".json")
 }
 
-/// The path with more after its extension.
+/// The path with a suffix after its extension.
 fn beside(path: &Path, more: &str) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(more);
     path.with_file_name(name)
 }
 
-/// The message for a file without the properties `what`.
+/// The message for a file that lacks the properties `what`.
 #[must_use]
 pub fn needs(what: &str) -> String {
     format!("it lacks {what}; write them to a file of the same name with the extension .json or .toml")

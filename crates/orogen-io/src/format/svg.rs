@@ -1,4 +1,4 @@
-//! Helpers for SVG files that every reader opens, whatever their size.
+//! Helpers for SVG files that every reader can open, whatever their size.
 //!
 //! XML readers have limits. libxml2, which librsvg uses, rejects attributes of more than 10 million characters, and
 //! also 10 million characters of elements if its buffer could not be freed between them. Writers therefore make
@@ -6,14 +6,14 @@
 
 use std::io::{self, Write};
 
-/// Characters of a path after which a new one starts.
+/// Number of characters of a path after which a new one starts.
 pub const MAX_PATH: usize = 1 << 16;
 
 /// Maximum number of points of a line; a longer line is written as several.
 const MAX_POINTS: usize = 1 << 11;
 
-/// Spaces after a long element. libxml2 frees its buffer when little of it is left to read. Elements longer than its
-/// read size rarely end at such a moment; this many spaces always include one.
+/// Number of spaces after a long element. libxml2 frees its buffer when little of it is left to read. This rarely
+/// happens at the end of an element longer than its read size, but always happens within this many spaces.
 const PADDING: usize = 1 << 13;
 
 /// Writes padding, for use after an element longer than [`MAX_PATH`].

@@ -1,8 +1,8 @@
 //! Lines and areas of SVG documents.
 //!
-//! Elements with a `transform` and groups of such are read; nested `svg` elements count as groups. Nothing is read of
-//! definitions, of what is not displayed, of `use`, text and pictures, and of style sheets. Coordinates are those of
-//! the document's user space: the attributes `width`, `height` and `viewBox` of the document do not matter.
+//! Elements with a `transform` and groups with one are read; nested `svg` elements count as groups. Definitions, hidden
+//! elements, `use`, text, pictures and style sheets are ignored. Coordinates are in the document's user space: its
+//! attributes `width`, `height` and `viewBox` have no effect.
 
 use orogen_grid::polylines::outline::{Outline, Piece};
 use roxmltree::{Document, Node};
@@ -13,7 +13,7 @@ use super::xml;
 
 const NAMESPACE: &str = "http://www.w3.org/2000/svg";
 
-/// Elements whose content is not drawn where it stands.
+/// Elements whose content is not drawn at their position.
 const NOT_DRAWN: [&str; 6] = ["defs", "clipPath", "mask", "pattern", "symbol", "marker"];
 
 /// Reads a document.
@@ -27,7 +27,7 @@ pub(super) fn read(text: &str, collector: &mut Collector) -> Result<(), String> 
     if root.tag_name().name() != "svg" {
         return Err(format!("it is not SVG: its root is `{}`", root.tag_name().name()));
     }
-    // Without recursion: groups may be nested to any depth.
+    // Not recursive, because groups may be nested to any depth.
     let mut open = vec![(root, Affine::IDENTITY)];
     while let Some((node, outer)) = open.pop() {
         let located = |why: String| format!("{}: {why}", called(&document, &node));
@@ -45,7 +45,7 @@ pub(super) fn read(text: &str, collector: &mut Collector) -> Result<(), String> 
     Ok(())
 }
 
-/// What messages call an element: by its `id`, otherwise by its number among those of its name.
+/// The name of an element in messages: its `id`, otherwise its number among the elements of its kind.
 fn called(document: &Document, node: &Node) -> String {
     let name = node.tag_name().name();
     match node.attribute("id") {
@@ -128,7 +128,7 @@ fn rectangle(node: &Node) -> Result<Vec<Outline>, String> {
     if !(width > 0.0 && height > 0.0) {
         return Ok(Vec::new());
     }
-    // One radius alone is both.
+    // If only one radius is given, it applies to both axes.
     let [rx, ry] = match [length(node, "rx")?, length(node, "ry")?] {
         [Some(rx), Some(ry)] => [rx, ry],
         [Some(radius), None] | [None, Some(radius)] => [radius, radius],
@@ -200,7 +200,7 @@ impl Affine {
         }
     }
 
-    /// The inner transform, and then this one.
+    /// Composition: the inner transform first, then this one.
     fn then(self, inner: Affine) -> Affine {
         let [a, b, c, d, e, f] = inner.0;
         let linear = Affine([self.0[0], self.0[1], self.0[2], self.0[3], 0.0, 0.0]);

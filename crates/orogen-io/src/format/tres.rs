@@ -8,7 +8,7 @@ use std::io::{self, Write};
 ///
 /// Fails if `out` fails.
 pub fn write_multimesh(out: &mut dyn Write, transforms: impl ExactSizeIterator<Item = [f32; 12]>) -> io::Result<()> {
-    // The comment tells that the file was made by a program: Godot removes it when it saves.
+    // The comment marks the file as generated: Godot removes it when it saves.
     writeln!(out, "[gd_resource type=\"MultiMesh\" format=3]\n; made by Orogen\n\n[resource]")?;
     // 1 is TRANSFORM_3D. It must precede the number of instances.
     writeln!(out, "transform_format = 1\ninstance_count = {}", transforms.len())?;

@@ -1,5 +1,5 @@
-//! GDAL's virtual rasters, `.vrt`: a raster composed of parts of others. Only simple sources without resampling are
-//! supported.
+//! GDAL's virtual rasters, `.vrt`: a raster composed of parts of other rasters. Only simple sources without resampling
+//! are supported.
 
 use roxmltree::Node;
 
@@ -29,9 +29,9 @@ pub struct Virtual {
 /// A band of a virtual raster.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Band {
-    /// Its sources; later ones cover earlier ones.
+    /// The sources; later ones cover earlier ones.
     pub sources: Vec<Source>,
-    /// Its nodata value, scale, offset and unit.
+    /// The nodata value, scale, offset and unit.
     pub metadata: BandMetadata,
 }
 
@@ -40,7 +40,7 @@ pub struct Band {
 pub struct Source {
     /// The file.
     pub path: String,
-    /// Whether its path is relative to the folder of the `.vrt`.
+    /// Whether the path is relative to the folder of the `.vrt`.
     pub relative: bool,
     /// The band, from 1.
     pub band: u32,

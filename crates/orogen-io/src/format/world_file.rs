@@ -1,4 +1,4 @@
-//! World files: six lines beside a picture that state the position of its pixels.
+//! World files: six lines that state the position of a picture's pixels.
 //!
 //! Esri's format: column step eastward, rotations (two lines, 0), row step (negative if rows go south), east and north
 //! of the center of the first pixel. `NAME.pgw` belongs to `NAME.png`; `NAME.wld` and `NAME.EXTw` to any raster.
@@ -29,7 +29,7 @@ pub fn parse(text: &str) -> Result<Affine, String> {
     }
 }
 
-/// The name of the world file that Orogen writes for a raster: the one that programs look for first.
+/// The name of the world file that Orogen writes for a raster: the name that programs look for first.
 #[must_use]
 pub fn beside(path: &Path) -> PathBuf {
     let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));

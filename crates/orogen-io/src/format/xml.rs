@@ -8,10 +8,10 @@ const MAX_NODES: u32 = 1 << 20;
 /// Maximum number of attributes of an element. The parser compares each with all others.
 const MAX_ATTRIBUTES: usize = 256;
 
-/// Parses a document. A document type may be declared if `allow_dtd`.
+/// Parses a document. With `allow_dtd`, it may declare a document type.
 ///
 /// # Errors
-/// A message if it is not XML, or too large to be read in a short time.
+/// A message if it is not XML, or too large to be parsed in a short time.
 pub fn parse(text: &str, allow_dtd: bool) -> Result<Document<'_>, String> {
     if let Some(element) = crowded(text) {
         return Err(format!("its element `{element}` has more than {MAX_ATTRIBUTES} attributes"));
@@ -20,7 +20,7 @@ pub fn parse(text: &str, allow_dtd: bool) -> Result<Document<'_>, String> {
     Document::parse_with_options(text, options).map_err(|cause| format!("it is not valid XML ({cause})"))
 }
 
-/// The name of the first element with too many attributes. What is not XML is left to the parser.
+/// The name of the first element with too many attributes. Invalid XML is left to the parser.
 fn crowded(text: &str) -> Option<&str> {
     let mut rest = text;
     while let Some(start) = rest.find('<') {
@@ -30,13 +30,13 @@ fn crowded(text: &str) -> Option<&str> {
             rest = &rest[rest.find(end)? + end.len()..];
             continue;
         }
-        // A document type: what it declares follows.
+        // A document type, followed by its declarations.
         if rest.starts_with('!') {
             continue;
         }
         let tag = rest;
         let mut attributes = 0;
-        // The next mark outside of quoted values.
+        // The next special character outside of quoted values.
         while let Some(at) = rest.find(['"', '\'', '>', '<']) {
             let (mark, after) = (&rest[at..=at], &rest[at + 1..]);
             if matches!(mark, ">" | "<") {
@@ -67,7 +67,7 @@ mod tests {
         assert!(parse(&element(256), false).is_ok());
         assert_eq!(parse(&element(257), false).unwrap_err(), "its element `g` has more than 256 attributes");
         assert!(parse(&element(2_000_000), false).unwrap_err().contains("more than 256 attributes"));
-        // What only looks like attributes.
+        // Text that only looks like attributes.
         let quotes = "'a' ".repeat(400);
         for text in [
             format!("<a><!-- <b {quotes}> --></a>"),

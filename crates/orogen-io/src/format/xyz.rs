@@ -1,5 +1,5 @@
 //! Regular grids as text, `.xyz`: a line of east, north and height for each sample, separated by blanks, commas,
-//! semicolons or tabs, row by row, from the north or from the south. A line of names may come first.
+//! semicolons or tabs, row by row, from the north or from the south. The first line may contain names.
 
 use super::affine::{Affine, Lattice};
 use super::crs::unit::Unit;
@@ -10,8 +10,7 @@ use orogen_grid::error::Result;
 /// Reads a grid. `name` is the file's name in errors.
 ///
 /// # Errors
-/// If a line is not three numbers, the samples are not all of a regular grid, or heights take more than `allowed`
-/// bytes.
+/// If a line is not three numbers, the samples do not form a regular grid, or heights take more than `allowed` bytes.
 pub fn read(input: &mut dyn Input, name: &str, allowed: u64) -> Result<Dem> {
     open(input, allowed).map_err(|why| refused(name, why))
 }
@@ -38,7 +37,7 @@ mod tests {
 
     #[test]
     fn rows_from_the_north_and_from_the_south() {
-        // As GDAL writes it, and with names, commas and rows from the south.
+        // As written by GDAL, and with names, commas and rows from the south.
         let north = "600050 5199950 1\n600150 5199950 2\n600250 5199950 3\n600050 5199850 4\n600150 5199850 -5\n600250 5199850 6\n";
         let south = "x,y,z\n600050,5199850,4\n600150,5199850,-5\n600250,5199850,6\r\n600050,5199950,1\n600150,5199950,2\n600250,5199950,3";
         let commas = north.replace(' ', ";").replace(";5", ",0;5");

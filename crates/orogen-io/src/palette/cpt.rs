@@ -1,14 +1,14 @@
 //! Color palette tables (`.cpt`) of GMT, the Generic Mapping Tools.
 //!
-//! A line has a height, its color, a higher height, its color: `0 20/40/60 500 120/160/90`; components may be
-//! separated by blanks. Colors are red/green/blue, hue-saturation-value, cyan/magenta/yellow/black, #rrggbb, a gray
-//! level or a name. `B`, `F` and `N` are the colors below, above, and for missing samples. `# COLOR_MODEL`, `# RANGE`
-//! and `# HINGE` are supported.
+//! A line has a height, its color, a higher height, its color: `0 20/40/60 500 120/160/90`; components may be separated
+//! by blanks. Colors are red/green/blue, hue-saturation-value, cyan/magenta/yellow/black, #rrggbb, a gray level or a
+//! name. `B`, `F` and `N` are the colors below the table, above the table, and for missing samples. `# COLOR_MODEL`, `#
+//! RANGE` and `# HINGE` are supported.
 //!
-//! The color model tells what three or four numbers mean. Written in small letters (`hsv`) or with a plus sign
-//! (`+HSV`), it is also the one in which GMT mixes colors: hue, saturation and value each change linearly, and the hue
-//! does not take the shorter way, so that `0-1-1` to `360-1-1` passes through all hues. Such a slice becomes several
-//! stops, between which red, green and blue change linearly.
+//! The color model determines the meaning of three or four numbers. In lower case (`hsv`) or with a plus sign (`+HSV`),
+//! it is also the model in which GMT interpolates colors: hue, saturation and value each change linearly. The hue does
+//! not take the shorter way, so `0-1-1` to `360-1-1` passes through all hues. Such a slice becomes several stops,
+//! between which red, green and blue change linearly.
 
 use super::color::Rgb;
 use super::fitted::{hsv, of_hsv};
@@ -22,7 +22,7 @@ enum Model {
     Cmyk,
 }
 
-/// A color as it was written: hues of 0 and 360 degrees differ.
+/// A color as written: hues of 0 and 360 degrees are distinct.
 #[derive(Clone, Copy, PartialEq)]
 enum Color {
     Rgb([f64; 3]),
@@ -47,9 +47,9 @@ impl Color {
     }
 }
 
-/// The stops of a slice that is mixed by hue, saturation and value. Between multiples of 60 degrees, where red, green
-/// and blue have kinks, they are at most quadratic, and pieces of them differ by less than half a level of 255 from
-/// straight lines.
+/// The stops of a slice that is interpolated by hue, saturation and value. Between multiples of 60 degrees, where red,
+/// green and blue have kinks, they are at most quadratic. The stops divide them into pieces that differ by less than
+/// half a level of 255 from straight lines.
 fn hsv_stops([start, end]: [(f64, Color); 2]) -> Vec<(f64, Rgb)> {
     let (from, to) = (start.1.hsv(), end.1.hsv());
     let at = |share: f64| std::array::from_fn(|k| from[k] + share * (to[k] - from[k]));
@@ -81,10 +81,10 @@ fn hsv_stops([start, end]: [(f64, Color); 2]) -> Vec<(f64, Rgb)> {
 
 /// Parses a table.
 ///
-/// Heights are metres, unless the table is normalized (from 0 to 1, or from -1 to 1): then it is stretched over its
-/// `RANGE` or, if it has none, from the lowest height to the highest. With a `HINGE` both halves of a table from -1 to
-/// 1 are stretched on their own: 0 is at the hinge, a height of 0 m unless it states another, or without a range at sea
-/// level.
+/// Heights are metres, unless the table is normalized (from 0 to 1, or from -1 to 1). A normalized table is stretched
+/// over its `RANGE` or, if it has none, from the lowest height to the highest. With a `HINGE`, both halves of a table
+/// from -1 to 1 are stretched separately, with 0 at the hinge. The hinge is at a height of 0 m unless it states
+/// another, or without a range at sea level.
 ///
 /// # Errors
 /// A message with the line that cannot be parsed.
@@ -117,7 +117,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
         match &words[..] {
             [] => {}
             [which @ ("B" | "F" | "N"), color @ ..] => {
-                // A minus sign means that nothing is painted.
+                // A minus sign means that nothing is drawn.
                 let color = if color == ["-"] { None } else { Some(colors(color, model).map_err(at)?.rgb()) };
                 match *which {
                     "B" => palette.below = color,
@@ -157,7 +157,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     Ok(palette)
 }
 
-/// The model of colors, and that in which they are mixed.
+/// The model of colors, and the model in which they are interpolated.
 fn color_model(text: &str) -> Result<(Model, Model), String> {
     let name = text.strip_prefix('+').unwrap_or(text);
     let model = match name.to_ascii_uppercase().as_str() {
@@ -263,7 +263,7 @@ mod tests {
         assert_eq!(stops("-1 navy 1 white")[0].0, Share(0.0));
         assert_eq!(stops("# RANGE = -8000/4000\n0 navy 1 white")[1].0, Value(4000.0));
         // Adjacent slices with equal colors have no step between them.
-        // Both sides of a hinge are stretched on their own, as GMT does for etopo1, whose range is not symmetric.
+        // Both sides of a hinge are stretched separately, as GMT does for etopo1, whose range is not symmetric.
         for (hinge, expect) in
             [("HARD_HINGE", 0.0), ("SOFT_HINGE", 0.0), ("HINGE = 500", 500.0), ("HINGE = 9e9", -1250.0)]
         {
@@ -274,7 +274,7 @@ mod tests {
         assert_eq!(stops("0 red 1 blue\n1 blue 2 red").len(), 3);
     }
 
-    /// The colors that GMT 6 has at 0, 1/12, ... 1: hue, saturation and value change linearly.
+    /// The colors of GMT 6 at 0, 1/12, ... 1: hue, saturation and value change linearly.
     #[test]
     fn hues_are_mixed_as_gmt_mixes_them() {
         let at = |text: &str, height: f32| {
@@ -291,7 +291,7 @@ mod tests {
                 assert!(near(found, expect), "{model} {k}: {found:?}");
             }
             assert!(near(at(&cycle, 0.25), [128, 255, 0]) && near(at(&cycle, 0.875), [255, 0, 191]));
-            // Backwards, with columns, and with all three parts changing: 180 0.5 0.75 in the middle.
+            // Backwards, in columns, and with all three components changing: 180 0.5 0.75 in the middle.
             let text = format!("# COLOR_MODEL = {model}\n0 300 1 1 1 60 0 0.5\nB 240-1-1\n");
             assert!(near(at(&text, 0.5), [96, 191, 191]), "{:?}", at(&text, 0.5));
             for step in 0..=100 {
@@ -301,10 +301,10 @@ mod tests {
                 assert!(near(found, Color::Hsv(hsv).rgb()), "{share}: {found:?}");
             }
             assert_eq!(at(&text, -1.0), [0, 0, 255]);
-            // Names have hues as well; 240 is reached by way of 120, not of 300.
+            // Names have hues as well; 240 is reached through 120, not through 300.
             assert!(near(at(&format!("# COLOR_MODEL = {model}\n0 red 1 blue"), 0.5), [0, 255, 0]));
         }
-        // In capitals without a plus sign, colors are read as hues and mixed as red, green and blue.
+        // In capitals without a plus sign, colors are read as hues and interpolated as red, green and blue.
         assert!(near(at("# COLOR_MODEL = HSV\n0 0-1-1 1 120-1-1", 0.5), [128, 128, 0]));
         for model in ["rgb", "+RGB", "RGB"] {
             assert!(near(at(&format!("# COLOR_MODEL = {model}\n0 255/0/0 1 0/0/255"), 0.5), [128, 0, 128]));

@@ -3,9 +3,9 @@
 //! A line has a height and three numbers from 0 to 255, or a color name, separated by blanks, tabs, commas or colons.
 //! A fourth number, the opacity, is ignored. The height may be a percentage of the range, or `nv` for missing samples.
 //!
-//! Two kinds of files of other programs are read, too: colors from 0 to 1, if no number of the file is larger and one
-//! has a decimal point, and lines of three such numbers without heights (matplotlib's color maps, Scientific Color
-//! Maps), which are evenly spaced over the range.
+//! Two other kinds of files are supported. Colors may be from 0 to 1, if no number of the file is larger and one has a
+//! decimal point. Lines may also have three such numbers without heights (matplotlib's color maps, Scientific Color
+//! Maps); they are evenly spaced over the range.
 
 use super::color::Rgb;
 use super::names::named;
@@ -40,7 +40,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
             palette.missing = Some(color);
             continue;
         }
-        // `gdaldem`'s color for values without a line; the nearest stops are better here.
+        // `gdaldem`'s color for values without a line; here they get the nearest stops instead.
         if at.eq_ignore_ascii_case("default") {
             continue;
         }
@@ -58,7 +58,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     }
 }
 
-/// The colors of a file whose lines all are three numbers from 0 to 1.
+/// The colors of a file whose lines are all three numbers from 0 to 1; `None` for other files.
 fn colors_alone(lines: &[(usize, Vec<&str>)]) -> Option<Vec<Rgb>> {
     let is_alone = lines.len() > 1 && lines.iter().all(|(_, words)| words.len() == 3);
     let scale = scale_of(lines.iter().flat_map(|(_, words)| words.iter().copied()));
@@ -66,7 +66,7 @@ fn colors_alone(lines: &[(usize, Vec<&str>)]) -> Option<Vec<Rgb>> {
     if is_alone && scale == 255.0 { colors() } else { None }
 }
 
-/// The factor that makes bytes of components: 255 if none is larger than 1 and one has a decimal point, else 1.
+/// The factor that converts components to bytes: 255 if none is larger than 1 and one has a decimal point, else 1.
 fn scale_of<'a>(components: impl Iterator<Item = &'a str> + Clone) -> f64 {
     let is_small = |text: &str| text.parse::<f64>().is_ok_and(|value| (0.0..=1.0).contains(&value));
     match components.clone().any(|text| text.contains('.')) && components.clone().all(is_small) {
@@ -75,7 +75,7 @@ fn scale_of<'a>(components: impl Iterator<Item = &'a str> + Clone) -> f64 {
     }
 }
 
-/// The color of a name for `gdaldem`, whose gray, brown and others are not those of the web; `None` for other names.
+/// The color of a name in `gdaldem`, whose gray, brown and others differ from the web colors; `None` for other names.
 fn of_gdaldem(name: &str) -> Option<Rgb> {
     Some(match name.to_ascii_lowercase().as_str() {
         "green" => [0, 255, 0],
@@ -109,7 +109,7 @@ fn color(words: &[&str], scale: f64) -> Result<Rgb, String> {
     }
 }
 
-/// The stops in ascending order; the sort is stable.
+/// The stops in ascending order; stops with equal positions keep their order.
 fn ordered(mut palette: Palette) -> Palette {
     palette.stops.sort_by(|a, b| a.at.number().total_cmp(&b.at.number()));
     palette
@@ -138,7 +138,7 @@ mod tests {
 
     #[test]
     fn names_have_the_colors_of_gdaldem() {
-        // As gdaldem color-relief of GDAL 3.6 paints them; names that it does not know are those of the web.
+        // As `gdaldem color-relief` of GDAL 3.6 draws them; names that it does not know are web colors.
         let expect = [
             ("green", [0, 255, 0]),
             ("Aqua", [0, 191, 191]),
@@ -163,7 +163,7 @@ mod tests {
         let value = Position::Value;
         let expect = [stop(value(0.0), [0, 128, 255]), stop(value(1200.0), [255, 51, 0]), stop(value(3e3), [255; 3])];
         assert_eq!((&palette.stops[..], palette.missing), (&expect[..], Some([128; 3])));
-        // Whole numbers are bytes, and so is each number beside one above 1.
+        // Integers are bytes, and so are numbers in a file with a number above 1.
         for text in ["0 0 1 1\n5 1 1 0", "0 0.5 1 1\n5 1 2 1"] {
             assert!(
                 parse("t", text).unwrap().stops.iter().all(|stop| stop.color.iter().all(|part| *part < 3)),

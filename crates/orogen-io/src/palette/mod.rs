@@ -1,8 +1,8 @@
 //! Colors for heights: ramps between stops, the atlas tint for land and sea, palettes by name and from files.
 //!
-//! Colors between stops are mixed in Oklab (B. Ottosson, 2020), which is perceptually uniform: a mix of green and
-//! brown does not turn gray. Results are in linear light, so that shading can multiply them; [`color::Encoder`]
-//! converts them to bytes.
+//! Colors between stops are interpolated in Oklab (B. Ottosson, 2020), which is perceptually uniform: a color between
+//! green and brown does not turn gray. Results are in linear light, so that shading can multiply them;
+//! [`color::Encoder`] converts them to bytes.
 
 pub(crate) mod cpt;
 pub(crate) mod gdaldem;

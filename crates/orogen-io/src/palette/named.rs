@@ -21,7 +21,7 @@ pub enum Span {
     Degrees,
 }
 
-/// A palette with a name.
+/// A built-in palette with its name.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Named {
@@ -474,7 +474,7 @@ pub fn find(name: &str) -> Option<&'static Named> {
 }
 
 impl Named {
-    /// The palette, for use.
+    /// Converts it to a palette.
     #[must_use]
     pub fn palette(&self) -> Palette {
         let place = match self.span {
@@ -488,7 +488,7 @@ impl Named {
         palette
     }
 
-    /// The ends of the scale of its positions.
+    /// The ends of the scale of the positions.
     #[must_use]
     pub fn ends(&self) -> [f64; 2] {
         [self.stops.first(), self.stops.last()].map(|stop| stop.map_or(0.0, |stop| stop.0))
@@ -522,7 +522,7 @@ mod tests {
     fn the_textbooks_ramps_have_their_stops() {
         let steps = |name: &str| find(name).unwrap().stops.iter().map(|stop| stop.0).collect::<Vec<f64>>();
         assert_eq!(steps("bands"), [0.0, 0.3, 0.3, 0.4, 0.4, 0.7, 0.7, 0.9, 0.9, 1.0]);
-        // Made for noise from -1 to 1.
+        // Designed for noise from -1 to 1.
         let planet: Vec<f64> = steps("planet").iter().map(|at| ((2.0 * at - 1.0) * 1000.0).round() / 1000.0).collect();
         assert_eq!(planet, [-1.0, -0.9, -0.8, -0.7, -0.1, 0.1, 0.25, 0.6, 0.7, 1.0]);
         assert_eq!(steps("meadow").len(), 4);

@@ -157,7 +157,7 @@ const NAMES: [(&str, u32); 148] = [
 /// Further names of GDAL and GMT.
 const OTHERS: [(&str, u32); 1] = [("violetred", 0xd02090)];
 
-/// The color of a name, ignoring case; `gray0` to `gray100` (or `grey`) are percentages of white.
+/// The color with this name, ignoring case; `gray0` to `gray100` (or `grey`) are percentages of white.
 #[must_use]
 pub fn named(name: &str) -> Option<Rgb> {
     let name = name.to_ascii_lowercase();

@@ -9,8 +9,8 @@
 //! missing = "#dddddd"
 //! ```
 //!
-//! A color is #rrggbb, a name, or red, green and blue: from 0 to 1 if a number of the list has a decimal point, else
-//! whole numbers from 0 to 255.
+//! A color is #rrggbb, a name, or a list of red, green and blue: from 0 to 1 if a number of the list has a decimal
+//! point, else integers from 0 to 255.
 
 use std::mem::discriminant;
 
@@ -77,8 +77,8 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     Ok(palette)
 }
 
-/// A palette as a text that [`parse`] reads. `None` if the positions of its colors are of several kinds, or follow the
-/// relief, which the format cannot say.
+/// A palette as a text that [`parse`] reads. `None` if the positions of its colors are of several kinds, or depend on
+/// the relief, which the format cannot express.
 #[must_use]
 pub fn write(palette: &Palette) -> Option<String> {
     let first = palette.stops.first()?.at;
@@ -120,7 +120,7 @@ fn color(value: &toml::Value) -> Result<Rgb, String> {
     })
 }
 
-/// A text or a number as it is written; of other values, their type.
+/// A text or a number as written; for other values, their type.
 fn written(value: &toml::Value) -> String {
     match value {
         toml::Value::String(text) => text.clone(),

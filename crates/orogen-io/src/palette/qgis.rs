@@ -3,12 +3,12 @@
 
 use super::palette::{Mix, Palette, Position, Stop};
 
-/// How colors between values are chosen.
+/// How colors between values are determined.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
-    /// Mixed.
+    /// Interpolated.
     Interpolated,
-    /// The color of the next value, which may be `inf`.
+    /// The color of the next higher value, which may be `inf`.
     Discrete,
 }
 
@@ -61,7 +61,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     palette.mix = Mix::Rgb;
     let stop = |value: f64, color| Stop { at: Position::Value(value), color };
     for (k, (value, color)) in rows.iter().enumerate() {
-        // A discrete color begins where the one below ends.
+        // A discrete color begins at the value of the color below it.
         if let (Kind::Discrete, Some((below, _))) = (kind, k.checked_sub(1).and_then(|k| rows.get(k))) {
             palette.stops.push(stop(*below, *color));
         }

@@ -10,8 +10,8 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 /// Maximum size of a palette file, in bytes.
 const MOST: u64 = 1 << 20;
 
-/// Reads a palette: GMT's `.cpt`, GIMP's `.gpl`, our own `.toml`, and any other extension as a color map of QGIS or a
-/// color file of `gdaldem`.
+/// Reads a palette: GMT's `.cpt`, GIMP's `.gpl`, Orogen's `.toml`; any other extension is read as a QGIS color map or a
+/// `gdaldem` color file.
 ///
 /// # Errors
 /// If the file cannot be read, or cannot be parsed: the message contains the line.
@@ -32,7 +32,7 @@ pub fn read(path: &Path) -> Result<Palette> {
 /// # Errors
 /// A message about what is wrong.
 pub fn parse(name: &str, extension: &str, text: &str) -> std::result::Result<Palette, String> {
-    // Editors of Windows write a byte order mark.
+    // Windows editors write a byte order mark.
     let text = text.trim_start_matches('\u{feff}');
     match extension {
         "cpt" => cpt::parse(name, text),

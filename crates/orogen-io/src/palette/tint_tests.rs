@@ -1,4 +1,4 @@
-//! Tests of the tint, with the palettes that have names.
+//! Tests of the tint with built-in palettes.
 
 use super::color::decode;
 use super::named;

@@ -1,5 +1,5 @@
-//! `.prj` files of ARC/INFO, older than well-known text: lines of a keyword and a value, as the USGS wrote beside its
-//! grids.
+//! `.prj` files of ARC/INFO, older than well-known text: lines of a keyword and a value. The USGS provided them with
+//! its grids.
 
 use super::epsg;
 use super::unit::US_FOOT;
@@ -7,8 +7,7 @@ use super::unit::US_FOOT;
 /// Maximum number of lines.
 const MAX_LINES: usize = 64;
 
-/// The EPSG code of such a text, if it is supported: UTM or degrees, in metres, on the datums of North America or WGS
-/// 84.
+/// The EPSG code of such a text, if it is supported: UTM or degrees, in metres, on North American datums or WGS 84.
 pub fn epsg(text: &str) -> Option<u16> {
     let value = |wanted: &str| value(text, wanted);
     let plain = |text: String| text.replace(['_', '-', ' '], "");
@@ -24,7 +23,7 @@ pub fn epsg(text: &str) -> Option<u16> {
             if value("Units").is_some_and(|units| !units.starts_with("METER") && !units.starts_with("METRE")) {
                 return None;
             }
-            // A southern zone is written with a false northing, or as a negative number.
+            // A southern zone has a false northing or is a negative number.
             let zone: i32 = value("Zone")?.parse().ok()?;
             let shifted = value("Yshift").and_then(|shift| shift.parse::<f64>().ok()).is_some_and(|shift| shift != 0.0);
             let first = match (degrees, zone < 0) {
@@ -50,7 +49,7 @@ fn value(text: &str, wanted: &str) -> Option<String> {
     })
 }
 
-/// Metres per unit of height, if the text states them: a number is that of units in a metre.
+/// Metres per unit of height, if the text states the unit; a number is the number of units per metre.
 pub fn vertical_metres(text: &str) -> Option<f64> {
     value(text, "Projection")?;
     match value(text, "Zunits")?.as_str() {

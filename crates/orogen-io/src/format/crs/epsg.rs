@@ -1,6 +1,6 @@
-//! Coordinate systems by EPSG code (EPSG Geodetic Parameter Dataset, IOGP): the geographic systems and UTM grids common
-//! for elevation data, Web Mercator, the polar grids, and national grids of many countries. Names are ESRI's, so that
-//! its programs recognise them.
+//! Coordinate systems by EPSG code (EPSG Geodetic Parameter Dataset, IOGP): common geographic systems and UTM grids of
+//! elevation data, Web Mercator, the polar grids, and national grids of many countries. Names are ESRI's, so that ESRI
+//! programs recognise them.
 
 use super::system::{Geographic, Method, System};
 
@@ -253,14 +253,14 @@ const PROJECTED: &[Projected] = &[
     (6703, "WGS_1984_TM_60_SW", 4326, TransverseMercator, &[500000.0, 10000000.0, -60.0, 0.9996, 0.0]),
 ];
 
-/// The geographic system of a code.
+/// The geographic system with this code.
 pub fn geographic(code: u16) -> Option<Geographic> {
     let row = GEOGRAPHIC.iter().find(|row| row.0 == code)?;
     let (code, name, datum, datum_ogc, spheroid, radius, flattening) = *row;
     Some(Geographic { code, name, datum, datum_ogc, spheroid, radius, flattening })
 }
 
-/// The system of a code, if it is in this module.
+/// The system with this code; `None` if it is not in this module.
 pub fn find(code: u16) -> Option<System> {
     if let Some(geographic) = geographic(code) {
         return Some(System { name: geographic.name.to_string(), geographic, projection: None, unit: 1.0 });
@@ -271,7 +271,7 @@ pub fn find(code: u16) -> Option<System> {
     }
     let (from, _, zone, degrees, name, hemisphere) = ZONES.iter().find(|row| (row.0..=row.1).contains(&code))?;
     let zone = zone + code - from;
-    // The Australian grids have no letter, and are in the southern hemisphere.
+    // Names of Australian grids have no letter; these grids are in the southern hemisphere.
     let north = *hemisphere == "N";
     let parameters = vec![500_000.0, if north { 0.0 } else { 1e7 }, f64::from(zone) * 6.0 - 183.0, 0.9996, 0.0];
     let projection = Some((TransverseMercator, parameters));

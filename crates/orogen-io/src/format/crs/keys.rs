@@ -1,4 +1,4 @@
-//! GeoTIFF keys (OGC 19-008r4) to and from well-known text.
+//! Conversion of GeoTIFF keys (OGC 19-008r4) from and to well-known text.
 
 use super::system::{Geographic, Method, System};
 use super::unit::{Unit, code_of_length, length_of_code};
@@ -17,7 +17,7 @@ pub struct GeoKeys {
     pub text: String,
 }
 
-/// The prefix of ESRI's programs and GDAL for well-known text that no other key can express.
+/// The prefix that ESRI's programs and GDAL use for well-known text that no other key can express.
 pub(crate) const ESRI_TEXT: &str = "ESRI PE String = ";
 
 pub(crate) const MODEL: u16 = 1024;
@@ -93,8 +93,7 @@ pub fn unit(keys: &GeoKeys) -> Result<Unit, String> {
     if is_degrees(keys) { angle(keys) } else { metres(keys).map(Unit::Metres) }
 }
 
-/// Metres per unit of projected coordinates: as the keys state it, otherwise that of the EPSG code; 1 if neither is
-/// known.
+/// Metres per unit of projected coordinates: as the keys state it, otherwise from the EPSG code; 1 if neither is known.
 ///
 /// # Errors
 /// A message if the keys state a unit that is not a known length.
@@ -114,8 +113,8 @@ pub fn metres(keys: &GeoKeys) -> Result<f64, String> {
     }
 }
 
-/// The unit of longitude and latitude: as the keys state it, otherwise that of the EPSG code or of the text; degrees if
-/// none is known.
+/// The unit of longitude and latitude: as the keys state it, otherwise from the EPSG code or the text; degrees if none
+/// is known.
 fn angle(keys: &GeoKeys) -> Result<Unit, String> {
     let of_radians = |radians: f64| {
         let is = |degrees: f64| (radians - degrees.to_radians()).abs() < 1e-9;
@@ -154,7 +153,7 @@ pub fn epsg(keys: &GeoKeys) -> Option<u16> {
     if is_degrees(keys) { key(GEOGRAPHIC) } else { key(PROJECTED) }
 }
 
-/// The keys of an EPSG code.
+/// The keys for an EPSG code.
 #[must_use]
 pub fn of_epsg(code: u16, geographic: bool) -> GeoKeys {
     let directory = match geographic {
@@ -164,7 +163,7 @@ pub fn of_epsg(code: u16, geographic: bool) -> GeoKeys {
     GeoKeys { directory, ..GeoKeys::default() }
 }
 
-/// The keys of the text of a `.prj`: the EPSG code if it states one or is a known system, otherwise the text itself.
+/// The keys for the text of a `.prj`: the EPSG code if it states one or is a known system, otherwise the text itself.
 ///
 /// # Errors
 /// A message if it is not the text of a coordinate system on Earth.
@@ -186,10 +185,10 @@ pub fn of_wkt(wkt: &str) -> Result<GeoKeys, String> {
         }
         return Ok(keys);
     }
-    // Heights are converted to metres, so the vertical part is left out.
+    // Heights are converted to metres, so the vertical part is omitted.
     let wkt = wkt.get(node.horizontal().span.clone()).unwrap_or(wkt);
     let text = format!("{ESRI_TEXT}{wkt}|");
-    // A bar would end the text, and GeoTIFF texts are ASCII.
+    // A bar would end the text, and GeoTIFF texts must be ASCII.
     if wkt.contains('|') || !wkt.is_ascii() {
         return Err("its well-known text contains invalid characters".into());
     }
@@ -202,7 +201,7 @@ pub fn of_wkt(wkt: &str) -> Result<GeoKeys, String> {
     Ok(keys)
 }
 
-/// The keys of a well-known text, or of a code such as `EPSG:32632`, also in a URL or URN that ends with it.
+/// The keys for a well-known text, or for a code such as `EPSG:32632`, also in a URL or URN that ends with it.
 ///
 /// # Errors
 /// A message if it is neither.
@@ -218,7 +217,7 @@ pub fn of_text(text: &str) -> Result<GeoKeys, String> {
     }
 }
 
-/// Adds the unit of length. Keys are sorted, and this one is the last.
+/// Adds the unit of length. Keys must be sorted, and this one is the last.
 fn push_unit(keys: &mut GeoKeys, metres: f64) {
     let code = code_of_length(metres);
     if let Some(code) = code {
@@ -241,7 +240,7 @@ pub fn to_wkt(keys: &GeoKeys) -> Result<String, String> {
     if let Some(code) = epsg(keys) {
         return match epsg::find(code) {
             Some(system) => Ok(system.to_wkt()),
-            // In OGC's terms, which all programs except ESRI's read equally well.
+            // In OGC's form, which all programs except ESRI's read equally well.
             None => match crs_definitions::from_code(code) {
                 Some(definition) => Ok(definition.wkt.to_string()),
                 None => Err(format!("the registry has no EPSG:{code}")),
@@ -264,14 +263,14 @@ pub fn to_wkt(keys: &GeoKeys) -> Result<String, String> {
     }
 }
 
-/// The geographic system of the keys: by its code, by that of its datum, or by its ellipsoid only.
+/// The geographic system of the keys: by its code, by the code of its datum, or by its ellipsoid only.
 fn geographic(keys: &GeoKeys) -> Option<Geographic> {
     let coded = |key: u16| short(keys, key).filter(|code| *code != USER_DEFINED);
     if let Some(code) = coded(GEOGRAPHIC) {
         return epsg::geographic(code);
     }
     if let Some(datum) = coded(DATUM) {
-        // EPSG numbers the datum of a system by the system's code plus 2000.
+        // The EPSG code of the datum of these systems is the system's code plus 2000.
         return epsg::geographic(datum.checked_sub(2000)?);
     }
     let radius = double(keys, SEMI_MAJOR)?;
@@ -297,7 +296,7 @@ fn user_defined(keys: &GeoKeys) -> Option<System> {
     if short(keys, MODEL) != Some(1) || short(keys, ANGULAR_UNIT).is_some_and(|unit| !matches!(unit, 9102 | 9122)) {
         return None;
     }
-    // Longitudes from another meridian than Greenwich.
+    // Longitudes that count from a meridian other than Greenwich.
     if short(keys, 2051).is_some_and(|code| !matches!(code, 0 | 8901 | USER_DEFINED))
         || double(keys, 2061).is_some_and(|degrees| degrees != 0.0)
     {
@@ -318,7 +317,7 @@ fn user_defined(keys: &GeoKeys) -> Option<System> {
         9 => (Method::LambertOne, vec![latitude, scale, latitude]),
         10 => (Method::AzimuthalEqualArea, vec![latitude]),
         11 => (Method::Albers, vec![double(keys, 3078)?, double(keys, 3079)?, latitude]),
-        // The latitude is that of true scale, unless it is the pole.
+        // The latitude is the latitude of true scale, unless it is the pole.
         15 if latitude.abs() == 90.0 => (Method::Stereographic, vec![scale, latitude]),
         15 if latitude > 0.0 && scale == 1.0 => (Method::NorthPole, vec![latitude]),
         15 if latitude < 0.0 && scale == 1.0 => (Method::SouthPole, vec![latitude]),
@@ -328,7 +327,7 @@ fn user_defined(keys: &GeoKeys) -> Option<System> {
         24 => (Method::Sinusoidal, Vec::new()),
         _ => return None,
     };
-    // ESRI's name would not match; the citation is the file's own name.
+    // ESRI's name would not match; the citation is the name in the file.
     let name = text(keys, PROJECTED_CITATION).or_else(|| text(keys, CITATION)).unwrap_or("Unknown");
     let name: String = name.chars().filter(|c| c.is_ascii_graphic() && !"\"[]|".contains(*c) || *c == ' ').collect();
     let unit = metres(keys).ok()?;

@@ -1,4 +1,4 @@
-//! GeoKeys written again from what is known of them.
+//! GeoKeys written again from their known parts.
 
 use super::keys::{
     DOUBLES, ESRI_TEXT, GEOGRAPHIC, GeoKeys, MODEL, PROJECTED, TEXTS, entries, epsg, is_degrees, metres, short,
@@ -13,7 +13,7 @@ const MAX_LENGTH: usize = 1 << 16;
 
 /// The keys of the horizontal system, as a new directory: sorted, each once, without padding, with the texts and
 /// numbers that they refer to. The raster type belongs to the samples, and the vertical system to heights in its unit,
-/// so both are left out. A UTM zone that is known by its projection alone gets its EPSG code.
+/// so both are omitted. A UTM zone that is stated only by its projection gets its EPSG code.
 ///
 /// # Errors
 /// A message if a number is not finite.
@@ -62,7 +62,7 @@ fn is_horizontal(key: u16) -> bool {
 }
 
 /// A text, in ASCII as GeoTIFF requires. Of well-known text only the horizontal system is kept. A key states the length
-/// of its text, so bars within it remain: GDAL separates the names of a datum, ellipsoid and meridian by them.
+/// of its text, so bars within it are kept: GDAL separates the names of a datum, ellipsoid and meridian by them.
 fn text_of(text: &str) -> String {
     let (before, wkt) = text.split_once(ESRI_TEXT).map_or((text, None), |(before, wkt)| (before, Some(wkt)));
     let horizontal = wkt.map(|wkt| {
@@ -98,7 +98,8 @@ fn utm(keys: &GeoKeys) -> Option<u16> {
     }
 }
 
-/// A directory with another key, in order; a key of this number is replaced. A writer adds the raster type this way.
+/// A directory with an additional key, in order; an existing key with this number is replaced. Writers add the raster
+/// type this way.
 #[must_use]
 pub fn with_short(keys: &GeoKeys, key: u16, value: u16) -> Vec<u16> {
     let mut own: Vec<[u16; 4]> = entries(keys).filter(|other| other[0] != key).collect();
@@ -143,7 +144,7 @@ mod tests {
         assert_eq!(rebuilt(&GeoKeys { directory: vec![1, 1, 0, 9], ..GeoKeys::default() }).unwrap().directory[3], 0);
         assert_eq!(rebuilt(&keys(&[[3080, DOUBLES, 1, 7]])).unwrap().directory, [1, 1, 0, 0]);
         assert_eq!(rebuilt(&GeoKeys::default()).unwrap().directory, [1, 1, 0, 0]);
-        // A text that is too long to be referred to.
+        // A text that is longer than keys can refer to.
         let long =
             GeoKeys { text: "a".repeat(1 << 17), ..keys(&[[1026, TEXTS, u16::MAX, 0], [3073, TEXTS, u16::MAX, 9]]) };
         assert_eq!(rebuilt(&long).unwrap().directory, [1, 1, 0, 0]);
@@ -168,7 +169,7 @@ mod tests {
 
     #[test]
     fn bars_within_texts_and_the_angle_of_oblique_systems_are_kept() {
-        // As GDAL writes a datum without a code, and an oblique Mercator projection.
+        // A datum without a code, and an oblique Mercator projection, as written by GDAL.
         let text = "GCS Name = a|Datum = b|Primem = Paris||";
         let mut found = keys(&[[1024, 0, 1, 1], [2049, TEXTS, text.len() as u16, 0], [3096, DOUBLES, 1, 0]]);
         (found.text, found.doubles) = (text.into(), vec![30.0]);
@@ -202,7 +203,7 @@ mod tests {
         ] {
             assert_eq!(unit(&found), Ok(expect), "{found:?}");
         }
-        // In feet by its code alone.
+        // In feet, which follows from its code alone.
         let Ok(Unit::Metres(feet)) = unit(&of_epsg(2264, false)) else { panic!() };
         assert!((feet - 1200.0 / 3937.0).abs() < 1e-12);
         for (key, unit_code) in [(2054, 9104), (2054, 9001)] {

@@ -25,7 +25,7 @@ pub struct Crs {
 impl FromStr for Crs {
     type Err = String;
 
-    /// Reads `EPSG:32632`, `urn:ogc:def:crs:EPSG::32632` or a code alone.
+    /// Parses `EPSG:32632`, `urn:ogc:def:crs:EPSG::32632` or only a code.
     fn from_str(text: &str) -> Result<Crs, String> {
         let text = text.trim();
         let lower = text.to_ascii_lowercase();
@@ -39,7 +39,7 @@ impl FromStr for Crs {
 }
 
 impl Crs {
-    /// The system of an EPSG code.
+    /// The system with this EPSG code.
     ///
     /// # Errors
     /// If the registry does not have the code, or it is neither a projected system nor a geographic one in degrees.
@@ -109,7 +109,7 @@ fn name(wkt: &'static str) -> &'static str {
     wkt.split('"').nth(1).unwrap_or_default()
 }
 
-/// Metres per unit of a projected system, and the unit's EPSG code: the `UNIT` outside of all other parts.
+/// Metres per unit of a projected system, and the unit's EPSG code: from the `UNIT` outside of all other parts.
 fn linear_unit(wkt: &str) -> Option<(f64, u16)> {
     let (mut depth, mut quoted, mut at) = (0, false, None);
     for (k, byte) in wkt.bytes().enumerate() {

@@ -12,8 +12,8 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// A guess for files that do not state the unit: degrees if all numbers are in range and cells are smaller than
-    /// 0.2, otherwise metres.
+    /// A guess for files that do not state the unit: degrees if all coordinates are valid degrees and cells are smaller
+    /// than 0.2, otherwise metres.
     #[must_use]
     pub fn guess(origin: [f64; 2], step: [f64; 2]) -> Unit {
         let degrees = step[0].max(step[1]) < 0.2 && origin[0].abs() <= 180.0 && origin[1].abs() <= 90.0;
@@ -34,7 +34,7 @@ impl Unit {
 /// Metres per US survey foot.
 pub const US_FOOT: f64 = 1200.0 / 3937.0;
 
-/// EPSG codes of units of length, and metres per unit.
+/// EPSG codes of units of length, with metres per unit.
 const LENGTHS: &[(u16, f64)] = &[
     (1025, 0.001),
     (1033, 0.01),
@@ -78,7 +78,7 @@ pub fn code_of_length(metres: f64) -> Option<u16> {
     LENGTHS.iter().find(|row| (row.1 - metres).abs() <= 1e-9 * metres).map(|row| row.0)
 }
 
-/// Metres per unit of length, by a name or symbol as GDAL, PROJ and ESRI write it; `None` if it is not a known length.
+/// Metres per unit of length, by a name or symbol that GDAL, PROJ or ESRI uses; `None` if it is not a known length.
 #[must_use]
 pub fn length_of_name(name: &str) -> Option<f64> {
     let plain: String = name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
@@ -96,7 +96,7 @@ pub fn length_of_name(name: &str) -> Option<f64> {
     }
 }
 
-/// The vertical systems of the EPSG registry that are not in metres, and metres per unit.
+/// The vertical systems of the EPSG registry that are not in metres, with metres per unit.
 const NOT_METRES: &[(u16, f64)] = &[
     (5614, 0.3048),
     (5702, US_FOOT),
@@ -115,7 +115,7 @@ const NOT_METRES: &[(u16, f64)] = &[
     (8897, 0.3048),
 ];
 
-/// Metres per unit of a vertical system, by its EPSG code.
+/// Metres per unit of the vertical system with this EPSG code.
 #[must_use]
 pub fn metres_of_vertical(code: u16) -> f64 {
     NOT_METRES.iter().find(|row| row.0 == code).map_or(1.0, |row| row.1)

@@ -9,7 +9,7 @@ use super::wkt::Node;
 const SYSTEM: u16 = 4096;
 const UNIT: u16 = 4099;
 
-/// Metres per unit of height that GeoTIFF keys state: by the unit's code, otherwise by that of the vertical system;
+/// Metres per unit of height that GeoTIFF keys state: by the unit's code, otherwise by the code of the vertical system;
 /// `None` if they state neither.
 ///
 /// # Errors
@@ -70,7 +70,7 @@ mod tests {
             (&[4096, 0, 1, 6360], Ok(Some(US_FOOT))),
             (&[4096, 0, 1, 8228], Ok(Some(0.3048))),
             (&[4099, 0, 1, 9002], Ok(Some(0.3048))),
-            // The unit wins over that of the system.
+            // The stated unit takes precedence over the unit of the system.
             (&[4096, 0, 1, 5703, 4099, 0, 1, 9003], Ok(Some(US_FOOT))),
             (&[4096, 0, 1, 32767, 4099, 0, 1, 9001], Ok(Some(1.0))),
         ] {

@@ -1,7 +1,7 @@
 //! Well-known text of coordinate systems: a parser, and recognition of the systems of [`epsg`].
 //!
-//! OGC 01-009 (WKT 1) and ESRI's dialect of it are compared by parameters. Of WKT 2 (OGC 18-010) only the EPSG code is
-//! used.
+//! OGC 01-009 (WKT 1) and ESRI's dialect of it are compared by parameters. From WKT 2 (OGC 18-010) only the EPSG code
+//! is used.
 
 use std::ops::Range;
 
@@ -15,14 +15,14 @@ pub const MAX_LENGTH: usize = 1 << 15;
 /// Maximum nesting depth; real texts have 6.
 const MAX_DEPTH: usize = 24;
 
-/// `KEYWORD[...]`.
+/// A node: `KEYWORD[...]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
     /// The keyword in capital letters.
     pub keyword: String,
     /// The values between the brackets.
     pub values: Vec<Value>,
-    /// The bytes of the text that it takes.
+    /// The range of bytes in the text.
     pub span: Range<usize>,
 }
 
@@ -33,7 +33,7 @@ pub enum Value {
     Text(String),
     /// A number.
     Number(f64),
-    /// A word such as an axis' direction.
+    /// A word, such as an axis direction.
     Word(String),
     /// A node.
     Node(Node),
@@ -50,7 +50,7 @@ impl Node {
         }
         let mut reader = Reader { bytes: text.as_bytes(), at: 0 };
         let mut node = reader.next_node(0)?;
-        // ESRI writes a vertical system after the horizontal one: together they are a compound system.
+        // ESRI writes a vertical system after the horizontal one; together they form a compound system.
         if reader.eat(b",") {
             let vertical = reader.next_node(0)?;
             let span = node.span.start..vertical.span.end;
@@ -149,7 +149,7 @@ impl Node {
         matches!(self.horizontal().keyword.as_str(), "GEOGCS" | "GEOGCRS" | "GEOGRAPHICCRS" | "GEODCRS" | "GEODETICCRS")
     }
 
-    /// Whether it is a projected system: not a vertical one, and not one without a place on Earth.
+    /// Whether it is a projected system; false for a vertical system and a system without a position on Earth.
     pub fn is_projected(&self) -> bool {
         matches!(self.horizontal().keyword.as_str(), "PROJCS" | "PROJCRS" | "PROJECTEDCRS")
     }
@@ -167,7 +167,7 @@ impl Node {
         self.stated_unit(&["UNIT", "LENGTHUNIT"])
     }
 
-    /// Radians per unit of a geographic system, if it states the unit.
+    /// Radians per unit of a geographic system; `None` if it does not state the unit.
     pub fn radians(&self) -> Option<f64> {
         if !self.is_geographic() {
             return None;
@@ -184,7 +184,7 @@ impl Node {
         unit.and_then(|unit| unit.number(1)).filter(|size| size.is_finite() && *size > 0.0)
     }
 
-    /// The EPSG code of the system: the stated one, otherwise that of the known system with the same parameters.
+    /// The EPSG code of the system: the stated one, otherwise the code of a known system with the same parameters.
     pub fn epsg(&self) -> Option<u16> {
         let node = self.horizontal();
         if let Some(code) = node.code() {
@@ -221,7 +221,7 @@ impl Node {
         let Some((method, parameters)) = &system.projection else { return true };
         let (name, names) = method.terms();
         let Some(said) = self.child(&["PROJECTION"]).and_then(|node| node.text(0)) else { return false };
-        // One projection with two names.
+        // The same projection has two names.
         let one = |name: &str| plain(name).replace("gausskruger", "transversemercator");
         if one(said) != one(name) {
             return false;
@@ -274,7 +274,7 @@ impl Reader<'_> {
         String::from_utf8_lossy(&rest[..length]).into_owned()
     }
 
-    /// A quoted text; a doubled quote stands for one.
+    /// A quoted text; two double quotes stand for one.
     fn quoted(&mut self) -> Result<String, String> {
         let mut text = Vec::new();
         loop {
@@ -292,7 +292,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The node that begins after blanks.
+    /// The node that begins after any blanks.
     fn next_node(&mut self, depth: usize) -> Result<Node, String> {
         self.blanks();
         let start = self.at;

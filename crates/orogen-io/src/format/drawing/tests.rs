@@ -17,7 +17,7 @@ fn svg(content: &str) -> String {
     format!("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 100 100\">{content}</svg>")
 }
 
-/// The lines of path data.
+/// The lines of SVG path data.
 fn path(data: &str) -> Vec<Vec<[f64; 2]>> {
     points(&svg(&format!("<path d=\"{data}\"/>")), Format::Svg, DrawingKind::Lines)
 }
@@ -42,7 +42,7 @@ fn path_data_of_straight_lines() {
     ] {
         assert_eq!(path(data), line, "{data}");
     }
-    // Several subpaths; after Z the next begins where the last began.
+    // Several subpaths; after Z, the next subpath begins where the last one began.
     assert_eq!(
         path("M0 0h5v5zl-1 0M7 7m1 1h1"),
         [
@@ -55,7 +55,7 @@ fn path_data_of_straight_lines() {
 
 #[test]
 fn path_data_of_curves() {
-    // Every second form draws the same curve as the one before.
+    // Every second form draws the same curve as the form before it.
     for [first, second] in [
         ["M0 0C0 10 20 10 20 0C20-10 40-10 40 0", "M0 0c0 10 20 10 20 0s20-10 20 0"],
         ["M0 0Q10 20 20 0Q30-20 40 0", "M0 0q10 20 20 0t20 0"],
@@ -77,7 +77,7 @@ fn path_data_of_curves() {
 #[test]
 fn arcs_are_parts_of_circles() {
     for (data, center, radius, length) in [
-        // A half; the large and the small part, both ways.
+        // A half circle; the large and the small part, in both directions.
         ("M0 0A10 10 0 0 1 20 0", [10.0, 0.0], 10.0, 31.4159),
         ("M0 0A10 10 0 0 1 10 10", [0.0, 10.0], 10.0, 15.708),
         ("M0 0A10 10 0 1 1 10 10", [10.0, 0.0], 10.0, 47.1239),
@@ -95,7 +95,7 @@ fn arcs_are_parts_of_circles() {
         let drawn: f64 = steps.sum();
         assert!((drawn - length).abs() < 0.01, "{data}: {drawn}");
     }
-    // An ellipse turned by 90 degrees is one with the radii swapped.
+    // An ellipse rotated by 90 degrees equals one with swapped radii.
     let (turned, swapped) = (path("M0 0A20 10 90 0 1 20 0").concat(), path("M0 0A10 20 0 0 1 20 0").concat());
     for [a, b] in turned.iter().zip(&swapped).map(|(a, b)| [a, b]) {
         assert!((a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9, "{a:?} {b:?}");
@@ -289,7 +289,7 @@ fn files_by_path() {
         let error = read(&path, 1 << 20).unwrap_err().to_string();
         assert!(error.contains(message), "{error}");
     }
-    // The content counts, not the text.
+    // The hash depends on the content, not on the text.
     let [a, b, c] = ["<line x2='5'/>", "<line  y1='0' x2='5.0'/>", "<line x2='6'/>"]
         .map(|text| Drawing::parse(&svg(text), Format::Svg, DrawingKind::Lines).unwrap().hash);
     assert!(a == b && a != c);

@@ -17,7 +17,7 @@ pub struct Blocks {
     tiled: bool,
 }
 
-/// What is read of a block: its samples inside the part of the raster that is read.
+/// The part of a block that is read: its samples inside the part of the raster that is read.
 #[derive(Debug, Clone, Copy)]
 pub struct Block {
     /// The first column and row in the block.
@@ -28,10 +28,10 @@ pub struct Block {
     pub size: [usize; 2],
 }
 
-/// Limits of the memory of decompression.
+/// Memory limits for decompression.
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
-    /// Number of heights that are held.
+    /// Number of heights in memory.
     pub count: usize,
     /// Maximum memory in bytes.
     pub allowed: u64,
@@ -63,7 +63,7 @@ impl Blocks {
         let (Some(offsets), Some(lengths)) = (offsets, lengths) else {
             return Err("its directory has no offsets of strips or tiles".into());
         };
-        // With separate bands there are more.
+        // With separate bands there are more blocks.
         let needed = width.div_ceil(block_width).saturating_mul(height.div_ceil(block_height));
         if (offsets.len() as u64) < needed || (lengths.len() as u64) < needed {
             let there = offsets.len().min(lengths.len());
@@ -72,8 +72,8 @@ impl Blocks {
         Ok(Blocks { width: block_width, height: block_height, size, offsets, lengths, tiled })
     }
 
-    /// Decompresses the blocks of a plane that have samples of the part, row by row. `row` is the length of a row of a
-    /// block in bytes. `visit` gets each block with its bytes; an absent block has none.
+    /// Decompresses the blocks of a plane that overlap the part, row by row. `row` is the length of a row of a block in
+    /// bytes. `visit` receives each block with its bytes; an absent block has no bytes.
     pub fn each(
         &self,
         tiff: &mut Tiff,
@@ -87,7 +87,7 @@ impl Blocks {
         let across = width.div_ceil(self.width);
         let first = (across * height.div_ceil(self.height)).saturating_mul(plane as u64);
         let [begin, end] = [limits.part.from, limits.part.end()].map(|at| at.map(|at| at as u64));
-        // A block may exceed the limit only as much as the tiles around a small raster.
+        // With a margin, because the tiles of a small raster may be larger than the raster.
         let largest = limits.allowed.saturating_mul(2 * limits.bands as u64).saturating_add(4 << 20);
         for down in begin[1] / self.height..end[1].div_ceil(self.height) {
             let top = down * self.height;

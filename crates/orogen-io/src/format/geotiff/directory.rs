@@ -4,7 +4,8 @@ use crate::format::crs::rebuilt::with_short;
 use crate::format::dem::Georeference;
 use orogen_grid::grid::Window;
 
-/// Properties that readers may rely on. The final space leaves room for editors of the file to change NO to YES.
+/// Properties that readers may rely on. The final space leaves room for programs that edit the file to change NO to
+/// YES.
 const PROMISES: &str = "LAYOUT=IFDS_BEFORE_DATA\n\
     BLOCK_ORDER=ROW_MAJOR\n\
     BLOCK_LEADER=SIZE_AS_UINT4\n\
@@ -49,8 +50,8 @@ pub struct Description {
     pub map: Option<Georeference>,
 }
 
-/// The file's first bytes, before the tiles, which follow from the last level to the first. Classic TIFF if `big` is
-/// false and the file is at most 4 GiB, otherwise BigTIFF.
+/// The file's first bytes, before the tiles, which are stored from the last level to the first. Classic TIFF if `big`
+/// is false and the file is at most 4 GiB, otherwise BigTIFF.
 pub fn head(description: &Description, levels: &[Level], big: bool) -> Vec<u8> {
     let wanted = if big { Form::Big } else { Form::Classic };
     let (form, begin) = match length(description, levels, wanted) {
@@ -62,7 +63,7 @@ pub fn head(description: &Description, levels: &[Level], big: bool) -> Vec<u8> {
     encode(description, levels, &offsets(levels, begin), form)
 }
 
-/// Number of bytes that the tiles of all levels take.
+/// Number of bytes of the tiles of all levels.
 pub fn data_length(levels: &[Level]) -> u64 {
     levels.iter().flat_map(|level| &level.lengths).map(|length| LEADER + u64::from(*length) + TRAILER).sum()
 }
@@ -138,7 +139,7 @@ impl Field {
     }
 }
 
-/// The entries of level `k`, sorted by tag. Only the full raster has the tags of position; overviews share it.
+/// The entries of level `k`, sorted by tag. Only the full raster has the position tags; overviews share them.
 fn fields(description: &Description, level: &Level, offsets: &[u64], k: usize, form: Form) -> Vec<Field> {
     let Description { window, tile, nodata, unit, map } = description;
     let (width, height, tile) = (level.width as u32, level.height as u32, *tile as u32);
@@ -190,7 +191,7 @@ fn fields(description: &Description, level: &Level, offsets: &[u64], k: usize, f
         fields.push(Field::text(42112, &format!("<GDALMetadata>{item}</GDALMetadata>")));
     }
     if let Some(nodata) = nodata {
-        // As f64, whose digits every reader parses to exactly this number.
+        // Written as f64, whose digits every reader parses to exactly this number.
         fields.push(Field::text(42113, &f64::from(*nodata).to_string().to_lowercase()));
     }
     fields
@@ -316,7 +317,7 @@ mod tests {
         let classic = |levels: &[Level]| head(&description, levels, false)[2] == 42;
         let mut levels = levels(4, 1 << 30);
         assert!(!classic(&levels));
-        // To the byte: 2^32 - 1 bytes are the most whose end four bytes can tell.
+        // Exactly 2^32 - 1 bytes is the largest size whose end fits in four bytes.
         levels[0].lengths[3] = 0;
         let others = head(&description, &levels, false).len() as u64 + data_length(&levels);
         levels[0].lengths[3] = (u64::from(u32::MAX) - others) as u32;

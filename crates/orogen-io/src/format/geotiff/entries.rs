@@ -1,4 +1,4 @@
-//! The first directory of a TIFF, parsed without trusting it.
+//! The first directory of a TIFF, parsed without trusting the file.
 
 use std::io::SeekFrom;
 
@@ -14,7 +14,7 @@ const MAX_DIRECTORIES: usize = 64;
 const REDUCED: u64 = 1;
 const MASK: u64 = 4;
 
-/// An opened TIFF: the entries of the directory of its full raster.
+/// An opened TIFF with the entries of the directory of its full raster.
 pub struct Tiff<'a> {
     input: &'a mut dyn Input,
     /// Length of the file in bytes.
@@ -31,7 +31,7 @@ struct Entry {
     tag: u16,
     kind: u16,
     count: u64,
-    /// Position of its values in the file.
+    /// Position of the values in the file.
     at: u64,
 }
 
@@ -60,14 +60,14 @@ impl<'a> Tiff<'a> {
         }
     }
 
-    /// Moves on to the directory of the mask of the full raster, which has `size` samples; false if there is none.
+    /// Moves to the directory of the mask of the full raster, which has `size` samples; returns false if there is none.
     pub fn seek_mask(&mut self, size: [u64; 2]) -> Fallible<bool> {
         self.seek(
             |tiff, kind| Ok(kind & (REDUCED | MASK) == MASK && [tiff.one(256)?, tiff.one(257)?] == size.map(Some)),
         )
     }
 
-    /// Moves to the first directory that is wanted by its subfile type.
+    /// Moves to the first directory whose subfile type `wanted` accepts.
     fn seek(&mut self, wanted: impl Fn(&mut Self, u64) -> Fallible<bool>) -> Fallible<bool> {
         let mut at = self.first;
         for _ in 0..MAX_DIRECTORIES {

@@ -1,5 +1,5 @@
-//! Masks: a raster of one bit or one byte per sample, 0 where the heights are missing. In the file it has a directory
-//! of its own; beside it, GDAL writes NAME.EXT.msk, which is a TIFF as well.
+//! Masks: a raster of one bit or one byte per sample, which is 0 where heights are missing. In the file, it has its own
+//! directory. GDAL also writes separate files NAME.EXT.msk, which are TIFFs as well.
 
 use super::blocks::{Blocks, Limits};
 use super::entries::Tiff;
@@ -7,7 +7,7 @@ use super::unpack::{Packing, mask};
 use crate::format::dem::{Input, Part, Request};
 
 /// Sets heights to NaN where the file's own mask is 0. Without a mask nothing changes. Returns a note if the file is
-/// damaged after its raster: the heights are there, and a mask may not be.
+/// damaged after its raster: heights could be read, but a mask may have been lost.
 pub fn internal(
     tiff: &mut Tiff,
     size: [u64; 2],
@@ -25,7 +25,7 @@ pub fn internal(
     }
 }
 
-/// Sets heights to NaN where the mask file beside them is 0. A mask file has one band for all bands, or one for each.
+/// Sets heights to NaN where a separate mask file is 0. A mask file has one band for all bands, or one for each.
 pub fn external(
     input: &mut dyn Input,
     size: [u64; 2],

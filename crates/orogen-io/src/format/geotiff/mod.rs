@@ -15,10 +15,10 @@
 //! the corner of the raster half a cell to the north-west of it, and the center of their first pixel on the sample.
 //!
 //! **Overviews** halve each side, rounded up, until one tile holds the whole raster. Every reader stretches an overview
-//! over the whole area of the raster, so its samples are at the *center* of those that they represent. Decimation
+//! over the whole area of the raster, so its samples are at the *center* of the samples that they represent. Decimation
 //! (every second sample) would shift the terrain by half a cell at the first overview and by nearly half an overview's
 //! cell at the coarse ones; averaging does not. A sample of an overview is therefore the mean over its own area: of
-//! four samples or, where a side is odd, of all samples that it touches, weighted by the covered area.
+//! four samples or, where a side is odd, of all samples that it overlaps, weighted by the covered area.
 //!
 //! The bytes depend on the samples, the window and the options, but not on the number of threads or the pieces in which
 //! rows arrive.

@@ -1,4 +1,4 @@
-//! Options of a file.
+//! Options for writing a file.
 
 use crate::format::dem::Georeference;
 

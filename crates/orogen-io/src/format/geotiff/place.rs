@@ -9,7 +9,8 @@ use crate::format::crs::vertical;
 use crate::format::dem::Placement;
 
 /// The position of the samples, whether the first row is the southernmost, and metres per unit of height, if the
-/// coordinate system states it. A raster without position tags has no position. Without GeoKeys coordinates are metres.
+/// coordinate system states it. A raster without position tags has no position. Without GeoKeys, coordinates are in
+/// metres.
 pub struct Found {
     pub place: Option<Placement>,
     pub from_south: bool,
@@ -33,7 +34,7 @@ pub fn find(tiff: &mut Tiff, height: usize) -> Result<Found, String> {
         (_, Some([sx, sy, ..]), Some([i, j, _, x, y, ..])) => [*sx, 0.0, x - i * sx, 0.0, -sy, y + j * sy],
         _ => return Ok(Found { place: None, from_south: false, vertical, is_depth }),
     };
-    // The tags refer to pixel corners, unless key 1025 declares pixel-is-point: then they refer to the samples.
+    // The tags refer to pixel corners, unless key 1025 declares pixel-is-point; then they refer to samples.
     let half = match stored.as_ref().and_then(|keys| short(keys, 1025)) {
         Some(2) => 0.0,
         _ => 0.5,

@@ -66,8 +66,8 @@ impl Pyramid {
         self.sizes[level].map(|side| side.div_ceil(self.tile()))
     }
 
-    /// Writes the file. `lengths` are the sizes of the compressed tiles, level by level and row by row. `read` gets a
-    /// level and a tile's number, and fills a buffer of that length.
+    /// Writes the file. `lengths` are the sizes of the compressed tiles, level by level and row by row. `read` receives
+    /// a level and a tile's number, and fills a buffer with that tile.
     ///
     /// Fails if `out` or `read` fails.
     pub fn write(

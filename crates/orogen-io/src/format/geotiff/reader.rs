@@ -1,10 +1,10 @@
-//! Reading the heights of a GeoTIFF that any program wrote.
+//! Reading the heights of a GeoTIFF written by any program.
 //!
-//! Supported: classic TIFF and BigTIFF of both byte orders; one band, of several that are interleaved or separate, of
-//! integers (8, 16, 32, 64 bits, signed or unsigned) or floats (16, 32, 64); strips and tiles; no compression, LZW,
+//! Supported: classic TIFF and BigTIFF of both byte orders; one band, or one of several interleaved or separate bands,
+//! of integers (8, 16, 32, 64 bits, signed or unsigned) or floats (16, 32, 64); strips and tiles; no compression, LZW,
 //! deflate, PackBits, Zstandard, LZMA and LERC (with deflate and Zstandard); predictors 1, 2 and 3; GDAL's nodata; a
-//! band's scale, offset and unit in GDAL's metadata; masks in the file and beside it; an alpha band; absent blocks.
-//! Sizes in a file are checked against its length.
+//! band's scale, offset and unit in GDAL's metadata; masks in the file and in a separate file; an alpha band; absent
+//! blocks. Sizes stated in a file are checked against its length.
 
 use super::blocks::{Blocks, Limits};
 use super::entries::Tiff;
@@ -25,10 +25,10 @@ pub fn read(input: &mut dyn Input, name: &str, request: impl Into<Request>) -> R
     read_with(input, name, request, &Sidecar::default())
 }
 
-/// [`read()`] with what stands beside the file: a mask, and what replaces its own nodata, scale, offset and unit.
+/// [`read()`] with the content of sidecars: a mask, and values that replace the file's nodata, scale, offset and unit.
 ///
 /// # Errors
-/// The errors of [`read()`], and those of the mask.
+/// The errors of [`read()`], and errors of the mask.
 pub fn read_with(input: &mut dyn Input, name: &str, request: impl Into<Request>, told: &Sidecar) -> Result<Dem> {
     let request = request.into();
     let mut external = told.mask.as_deref().map(|path| open::regular(path, "read the mask")).transpose()?;
@@ -59,11 +59,11 @@ fn side(tiff: &mut Tiff, tag: u16, what: &str) -> std::result::Result<u64, Strin
 struct Samples {
     layout: Layout,
     packing: Packing,
-    /// The index, from 0, of the band among those interleaved in a block.
+    /// The index of the band, from 0, among the bands interleaved in a block.
     band: usize,
-    /// The number of bands before it, if each band has its own blocks.
+    /// The number of preceding bands, if each band has its own blocks.
     plane: usize,
-    /// The plane of the alpha band, and its index among those interleaved in a block: samples where it is 0 are
+    /// The plane of the alpha band, and its index among the bands interleaved in a block. Samples whose alpha is 0 are
     /// missing.
     alpha: Option<[usize; 2]>,
     metadata: BandMetadata,
@@ -88,7 +88,7 @@ fn heights(
     let found = place::find(tiff, whole[1])?;
     let part = if found.from_south { wanted.from_south(whole[1]) } else { wanted };
     let metadata = samples.metadata.clone().replaced_by(&told.band(request.band));
-    // A `.prj` beside the file applies to files without a coordinate system.
+    // A separate `.prj` file applies to files without a coordinate system.
     let has_system = found.place.as_ref().is_some_and(|place| place.keys.is_some());
     let vertical = if has_system { found.vertical } else { found.vertical.or(told.vertical) };
     let mut conversion = metadata.conversion(vertical)?;
@@ -206,7 +206,7 @@ fn samples(tiff: &mut Tiff, request: Request) -> std::result::Result<Samples, St
     };
     let stored = Stored { kind, size, big_endian: tiff.big_endian };
     Ok(Samples {
-        // Also for LERC: libtiff compresses a file's samples with their bytes in the file's order.
+        // Also for LERC: libtiff compresses samples whose bytes are in the file's order.
         layout: Layout { stored, predictor, bands: together },
         packing,
         band: if apart { 0 } else { band },

@@ -1,4 +1,4 @@
-//! Small files of other programs, built here: their units, masks, absent blocks and positions.
+//! Small files as other programs write them, built here: their units, masks, absent blocks and positions.
 
 use std::io::Cursor;
 
@@ -25,7 +25,7 @@ enum Values {
 
 use Values::{Doubles, Longs, Shorts, Text};
 
-/// The bytes of a classic TIFF with these directories; `data` lies behind the header, at byte 8.
+/// The bytes of a classic TIFF with these directories; `data` follows the header, at byte 8.
 fn tiff(data: &[u8], directories: &[Vec<(u16, Values)>]) -> Vec<u8> {
     let mut out = b"II\x2a\0\0\0\0\0".to_vec();
     out.extend(data);
@@ -95,7 +95,7 @@ fn dem(more: Vec<(u16, Values)>) -> Result<Dem, String> {
     read(&mut Cursor::new(bytes), "a.tif", 1 << 20).map_err(|error| error.to_string())
 }
 
-/// What the program's own writer makes of a file.
+/// Writes a DEM with Orogen's writer and reads it again.
 fn again(dem: &Dem) -> Dem {
     let prepared = PreparedDem::of(dem.clone(), None, 1 << 20).unwrap();
     let options = Options::of_unit("m").with_map(prepared.georeference.clone());
@@ -127,7 +127,7 @@ fn feet_become_metres_once() {
         (vec![keys([4096, 0, 1, 6360])], US_FOOT),
         (vec![keys([4096, 0, 1, 8228])], 0.3048),
         (vec![(42112, Text(item))], 0.3048),
-        // The unit of the band wins over that of the coordinate system, as in GDAL.
+        // The unit of the band takes precedence over that of the coordinate system, as in GDAL.
         (vec![keys([4099, 0, 1, 9003]), (42112, Text(item))], 0.3048),
         (vec![keys([4096, 0, 1, 5703])], 1.0),
     ] {
@@ -159,7 +159,7 @@ fn grads_are_nine_tenths_of_degrees() {
     let dem = dem(vec![(34735, Shorts(keys)), (33550, Doubles(vec![0.01, 0.01, 0.0])), (33922, position)]).unwrap();
     assert_eq!(dem.place.as_ref().unwrap().unit, Unit::Grads);
     let prepared = PreparedDem::of(dem, None, 1 << 20).unwrap();
-    // At 45 degrees north: 0.009 degrees of longitude, which become square cells of their length.
+    // At 45 degrees north, 0.009 degrees of longitude become square cells of this length.
     assert!((prepared.grid.window().cell - 709.7).abs() < 0.5, "{:?}", prepared.grid.window());
     let north = (prepared.grid.height() - 1) as f64 * prepared.grid.window().cell;
     assert!((2100.0..=3001.0).contains(&north), "{north}");
@@ -196,13 +196,13 @@ fn masked_samples_are_missing() {
     let open = |bytes: &[u8]| read(&mut Cursor::new(bytes), "a.tif", 1 << 20);
     let own = open(&tiff(&data, &[fields(Vec::new()), mask(4, 4, 1, 72, 4)])).unwrap();
     assert_eq!(missing(&own), [4, 11]);
-    // The mask of an overview is another one.
+    // The mask of an overview does not apply.
     let other = open(&tiff(&data, &[fields(Vec::new()), mask(5, 2, 1, 72, 2)])).unwrap();
     assert_eq!(missing(&other), [0usize; 0]);
     let error = open(&tiff(&data, &[fields(Vec::new()), mask(4, 4, 1, 72, 2)])).unwrap_err().to_string();
     assert!(error.contains("its mask cannot be read"), "{error}");
 
-    // A chain of directories that leads nowhere does not hide the raster.
+    // A broken chain of directories does not hide the raster.
     let mut broken = tiff(&samples(), &[fields(Vec::new())]);
     let end = broken.len();
     broken[end - 4..].copy_from_slice(&u32::MAX.to_le_bytes());
@@ -260,7 +260,7 @@ fn an_alpha_band_is_a_mask() {
     let together = tiff(&samples(&[5.0, 255.0, -9999.0, 0.0, 7.0, 1.0]), &[fields(1, vec![8], vec![24])]);
     let apart = tiff(&samples(&[5.0, -9999.0, 7.0, 255.0, 0.0, 1.0]), &[fields(2, vec![8, 20], vec![12, 12])]);
     for file in [together, apart] {
-        // GDAL reads bands of 8 and 16 bits in this way.
+        // GDAL reads bands of 8 and 16 bits in the same way.
         let dem = read(&mut Cursor::new(&file), "a.tif", 1 << 20).unwrap();
         assert!(dem.heights[0] == 5.0 && dem.heights[1].is_nan() && dem.heights[2] == 7.0, "{:?}", dem.heights);
         assert!(dem.notes.is_empty(), "{:?}", dem.notes);

@@ -1,4 +1,4 @@
-//! Reads the written files with an independent reader.
+//! Reads written files with an independent reader.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -245,7 +245,7 @@ fn it_says_where_it_lies() {
 
 #[test]
 fn overviews_stand_where_readers_put_them() {
-    // On a plane, the mean of the area of a sample is the value at its center.
+    // On a plane, the mean over a sample's area is the value at its center.
     for (width, height) in [(128, 96), (127, 97), (1001, 333)] {
         let plane = |x: f64, y: f64| 3.0 * x - 2.0 * y;
         let window = Window::new(width, height, 1.0);
@@ -312,7 +312,7 @@ fn what_cannot_be_written_is_an_error() {
     assert!(short.finish(&mut Vec::new()).is_err());
 }
 
-/// Accepts `left` bytes, then fails as a full disk does.
+/// Accepts `left` bytes, then fails like a full disk.
 struct Full<'a> {
     out: &'a mut dyn Write,
     left: usize,

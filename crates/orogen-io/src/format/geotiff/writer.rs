@@ -1,4 +1,4 @@
-//! A writer that takes rows and writes a file.
+//! A writer that receives rows and writes a file.
 
 use std::io::{self, Write};
 
@@ -35,7 +35,7 @@ pub fn write(out: &mut dyn Write, grid: &Grid, options: &Options, spool: Spool) 
 /// Writes a raster: [`Writer::rows`] takes all rows from the top, in any pieces, then [`Writer::finish`] writes the
 /// file.
 ///
-/// It holds a row of tiles per level in memory (two per thread if rows are short). The spool holds the rest: as many
+/// It keeps one row of tiles per level in memory (two per thread if rows are short). The spool holds the rest: as many
 /// bytes as the file will have.
 pub struct Writer {
     pyramid: Pyramid,
@@ -63,7 +63,7 @@ struct Level {
 }
 
 impl Writer {
-    /// Starts a file of the samples of `window`.
+    /// Starts a file for the samples of `window`.
     ///
     /// Fails if the window has no samples, no valid cell or more than 2^31 - 1 samples per side, or if TIFF or memory
     /// does not allow the tile.
@@ -81,7 +81,7 @@ impl Writer {
         if !samples.len().is_multiple_of(full.width) || full.arrived() + samples.len() / full.width > full.height {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "these are not rows of the raster"));
         }
-        // In pieces, so that a whole grid is not held twice.
+        // In pieces, so that a whole grid is not in memory twice.
         for piece in samples.chunks(full.width * self.pyramid.tile()) {
             self.take(piece)?;
         }

@@ -1,4 +1,4 @@
-//! The header of a NetCDF-3 file: its dimensions, variables and attributes, parsed without trusting it.
+//! The header of a NetCDF-3 file: its dimensions, variables and attributes, parsed without trusting the file.
 //!
 //! The format: Unidata, "The NetCDF Classic Format Specification"; CDF-5: PnetCDF. All numbers are big-endian.
 
@@ -50,7 +50,7 @@ impl Type {
         Some(Type { kind, size })
     }
 
-    /// How values are stored: those of text as numbers.
+    /// The type in which values are stored; text is stored as numbers.
     pub fn stored(self) -> Stored {
         let kind = match self.kind {
             Kind::Signed => stored::Kind::Signed,
@@ -96,18 +96,18 @@ impl Attributes {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variable {
     pub name: String,
-    /// Indices of its dimensions.
+    /// Indices of the dimensions.
     pub dimensions: Vec<usize>,
     pub attributes: Attributes,
     pub type_of: Type,
-    /// Position of its first value in the file.
+    /// Position of the first value in the file.
     pub begin: u64,
 }
 
 /// The header.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Header {
-    /// Names and lengths. That of the record dimension is the number of records.
+    /// Names and lengths. The length of the record dimension is the number of records.
     pub dimensions: Vec<(String, u64)>,
     /// The index of the record dimension.
     pub record: Option<usize>,
@@ -117,7 +117,7 @@ pub struct Header {
     pub length: u64,
 }
 
-/// How a file of another format begins.
+/// The first bytes of an HDF5 file.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 impl Header {
@@ -169,7 +169,7 @@ impl Source<'_> {
         let variables = self.list(VARIABLES, |source, _| source.variable(dimensions.len()))?;
         let mut header = Header { dimensions, record, attributes, variables, length };
         if let Some(record) = record {
-            // A file that is being written does not state their number.
+            // A file that is still being written does not state the number of records.
             let streaming = records == if self.version == 5 { u64::MAX } else { u64::from(u32::MAX) };
             header.dimensions[record].1 = if streaming { header.records_in_file() } else { records };
         }
@@ -187,7 +187,7 @@ impl Source<'_> {
         }
         let attributes = self.attributes()?;
         let type_of = self.type_of()?;
-        // The size of a variable follows from its dimensions.
+        // The stated size of a variable is skipped; it follows from its dimensions.
         self.count()?;
         let begin = if self.version == 1 { u64::from(self.word()?) } else { self.wide()? };
         Ok(Variable { name, dimensions: own, attributes, type_of, begin })
@@ -234,7 +234,7 @@ impl Source<'_> {
         Ok(String::from_utf8_lossy(&self.padded(length)?).into_owned())
     }
 
-    /// A number of things: four bytes, and eight in CDF-5.
+    /// A count: four bytes, or eight in CDF-5.
     fn count(&mut self) -> Result<u64, String> {
         if self.version == 5 { self.wide() } else { Ok(u64::from(self.word()?)) }
     }
@@ -274,12 +274,12 @@ impl Header {
         self.record.is_some() && variable.dimensions.first().copied() == self.record
     }
 
-    /// Bytes from one record to the next.
+    /// Number of bytes from one record to the next.
     pub fn record_size(&self) -> u64 {
         let sizes: Vec<u64> =
             self.variables.iter().filter(|variable| self.is_recorded(variable)).map(|own| self.part(own)).collect();
         match sizes[..] {
-            // Records of one variable are not padded.
+            // Records of a single variable are not padded.
             [only] => only,
             _ => sizes
                 .iter()

@@ -1,4 +1,4 @@
-//! NetCDF-3: grids of GMT and of the conventions COARDS and CF, in the classic format, with 64-bit offsets and as
+//! NetCDF-3: grids of GMT and of the conventions COARDS and CF, in the classic format, with 64-bit offsets, and as
 //! CDF-5.
 
 mod header;

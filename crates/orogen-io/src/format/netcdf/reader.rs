@@ -1,9 +1,9 @@
 //! Reading a grid of a NetCDF-3 file.
 //!
-//! A grid is a variable of numbers whose last two dimensions are rows and columns; each step of other dimensions is a
-//! band, and so is each of several variables. The position is taken from variables with the names of the dimensions,
-//! with GMT's `actual_range` and `node_offset`, or from GDAL's `GeoTransform`; the system from `grid_mapping`. Packed
-//! values have `scale_factor` and `add_offset`.
+//! A grid is a variable of numbers whose last two dimensions are rows and columns. Each step of its other dimensions is
+//! a band; each of several variables is a band, too. The position is taken from variables with the names of the
+//! dimensions, with GMT's `actual_range` and `node_offset`, or from GDAL's `GeoTransform`. The coordinate system is
+//! taken from `grid_mapping`. Packed values have `scale_factor` and `add_offset`.
 
 use std::io::SeekFrom;
 use std::path::Path;
@@ -20,7 +20,7 @@ use orogen_grid::error::Result;
 /// Maximum number of coordinates along a side.
 const MAX_SIDE: u64 = 1 << 24;
 
-/// Largest distance of a coordinate from evenly spaced ones, in cells: coordinates of 32 bits are not exact.
+/// Maximum deviation of a coordinate from even spacing, in cells: coordinates of 32 bits are not exact.
 const UNEVEN: f64 = 0.1;
 
 type Fallible<T> = std::result::Result<T, String>;
@@ -36,7 +36,7 @@ pub fn read(input: &mut dyn Input, name: &str, request: Request) -> Result<Dem> 
 /// The size and position of a grid, without reading its samples.
 ///
 /// # Errors
-/// The errors of [`read`], except those of samples.
+/// The errors of [`read`], except for errors of samples.
 pub fn head(input: &mut dyn Input, name: &str, band: Option<u32>) -> Result<([usize; 2], Option<Placement>)> {
     let mut found = || {
         let file = Header::read(input, file_name(name))?;
@@ -56,7 +56,7 @@ struct Grid<'a> {
     variable: &'a Variable,
     /// Columns and rows.
     size: [u64; 2],
-    /// Number of grids of the variable before it.
+    /// Number of preceding grids of the variable.
     index: u64,
 }
 
@@ -65,7 +65,7 @@ impl<'a> Grid<'a> {
         let mut bands = Vec::new();
         for variable in file.variables.iter().filter(|variable| variable.type_of.kind != Kind::Text) {
             let shape = file.shape(variable);
-            // Bounds of cells have two numbers for each.
+            // Bounds of cells have two numbers for each cell.
             if let [others @ .., height, width] = &shape[..]
                 && *height > 1
                 && *width > 1
@@ -100,10 +100,10 @@ impl<'a> Grid<'a> {
         Err("it has no grid".into())
     }
 
-    /// The position in the file of the samples of a row from a column on.
+    /// The position in the file of the samples of a row, starting at a column.
     fn at(&self, file: &Header, row: u64, column: u64) -> Option<u64> {
         let ([width, height], variable) = (self.size, self.variable);
-        // The index of the row among all of the variable.
+        // The index of the row among all rows of the variable.
         let row = self.index.checked_mul(height)?.checked_add(row)?;
         let (record, row) = match file.is_recorded(variable) {
             false => (0, row),
@@ -121,7 +121,7 @@ fn product(lengths: &[u64]) -> u64 {
     lengths.iter().fold(1, |product: u64, length| product.saturating_mul(*length))
 }
 
-/// Whether a variable has the bounds of another one's cells.
+/// Whether a variable contains the bounds of another variable's cells.
 fn is_bounds(file: &Header, name: &str) -> bool {
     file.variables.iter().any(|own| own.attributes.text("bounds") == Some(name))
 }
@@ -175,7 +175,7 @@ fn open(input: &mut dyn Input, name: &str, request: Request) -> Fallible<Dem> {
     Ok(dem)
 }
 
-/// The type of stored values: files without unsigned types mark them.
+/// The type of stored values. Files without unsigned types mark unsigned values with an attribute.
 fn stored(attributes: &Attributes, type_of: Type) -> Type {
     let is_unsigned = attributes.text("_Unsigned").is_some_and(|text| text.eq_ignore_ascii_case("true"));
     match type_of.kind {
@@ -184,8 +184,8 @@ fn stored(attributes: &Attributes, type_of: Type) -> Type {
     }
 }
 
-/// What a variable states about its samples. Without a `_FillValue`, samples that were never written have that of their
-/// type.
+/// The metadata of a variable's samples. Without a `_FillValue`, samples that were never written have the default fill
+/// value of their type.
 fn metadata(attributes: &Attributes, type_of: Type) -> BandMetadata {
     let mut nodata = [attributes.numbers("_FillValue"), attributes.numbers("missing_value")].concat();
     // Stored with the bits of the unsigned value.
@@ -199,7 +199,7 @@ fn metadata(attributes: &Attributes, type_of: Type) -> BandMetadata {
             (Kind::Signed, 4) => Some(-2_147_483_647.0),
             (Kind::Unsigned, 2) => Some(65_535.0),
             (Kind::Unsigned, 4) => Some(4_294_967_295.0),
-            // That of floats is too large for a height, and bytes have none.
+            // The fill value of floats is too large for a height, and bytes have none.
             _ => None,
         });
     }
@@ -222,7 +222,7 @@ fn place(file: &Header, grid: &Grid, input: &mut dyn Input) -> Fallible<Option<(
     let axis = |input: &mut dyn Input, dimension: usize| Axis::read(file, dimension, input);
     let (affine, unit) = match (axis(input, across)?, axis(input, down)?) {
         (Some(x), Some(y)) => {
-            // Beyond the date line, as GDAL.
+            // Longitudes of 180 degrees and more become negative, as in GDAL.
             let west = if x.is_degrees && x.first >= 180.0 { x.first - 360.0 } else { x.first };
             let unit = match x.metres {
                 _ if x.is_degrees => Unit::Degrees,
@@ -240,7 +240,7 @@ fn place(file: &Header, grid: &Grid, input: &mut dyn Input) -> Fallible<Option<(
     };
     let keys = mapping.and_then(system);
     let keys = match unit {
-        // Longitudes and latitudes without a datum are those of WGS 84.
+        // Longitudes and latitudes without a datum are treated as WGS 84.
         Some(Unit::Degrees) => keys.or(Some(keys::of_epsg(4326, true))),
         _ => keys,
     };
@@ -260,7 +260,7 @@ fn system(mapping: &Attributes) -> Option<GeoKeys> {
         .find_map(|text| keys::of_text(text).ok())
 }
 
-/// The coordinates along a dimension: those of sample k are `first + k * step`.
+/// The coordinates along a dimension: sample k is at `first + k * step`.
 struct Axis {
     first: f64,
     step: f64,
@@ -298,8 +298,8 @@ impl Axis {
     }
 }
 
-/// The first coordinate and the distance of the next by GMT's `actual_range`, which is that of edges if `node_offset`
-/// is 1. It is more precise than coordinates of 32 bits. `None` if it is absent or contradicts them.
+/// The first coordinate and the step from GMT's `actual_range`, which is a range of cell edges if `node_offset` is 1.
+/// It is more precise than coordinates of 32 bits. `None` if it is absent or contradicts them.
 fn ranged(file: &Header, variable: &Variable, first: f64, step: f64, cells: f64) -> Option<[f64; 2]> {
     let [low, high] = variable.attributes.numbers("actual_range") else { return None };
     let is_pixels = file.attributes.number("node_offset") == Some(1.0);
@@ -314,14 +314,14 @@ fn ranged(file: &Header, variable: &Variable, first: f64, step: f64, cells: f64)
 struct Line {
     type_of: Type,
     begin: u64,
-    /// Bytes from one number to the next.
+    /// Number of bytes from one number to the next.
     pace: u64,
     count: u64,
     scale: f64,
     offset: f64,
 }
 
-/// Numbers that are read at once.
+/// Number of numbers that are read at once.
 const PIECE: u64 = 4096;
 
 impl Line {
@@ -345,7 +345,7 @@ impl Line {
 
     /// Calls a function with each number and its index.
     fn each(&self, input: &mut dyn Input, mut visit: impl FnMut(u64, f64)) -> Fallible<()> {
-        // Numbers of records are apart.
+        // Numbers in records are not contiguous.
         let piece = if self.pace == self.type_of.size as u64 { PIECE } else { 1 };
         for first in (0..self.count).step_by(piece as usize) {
             self.piece(first, piece.min(self.count - first), input, &mut visit)?;

@@ -1,5 +1,5 @@
-//! Files of the corpus that are built by hand, and damaged ones. The heights and positions of the corpus are compared
-//! with GDAL's where it reads them (`crates/orogen/tests/suite/dems.rs`).
+//! Hand-built files of the corpus, and damaged ones. Heights and positions of the corpus are compared with GDAL's where
+//! GDAL reads them (`crates/orogen/tests/suite/dems.rs`).
 
 use std::io::Cursor;
 

@@ -25,7 +25,7 @@ impl Number {
     }
 }
 
-/// Description of an array.
+/// The description of an array.
 #[derive(Debug, Clone)]
 pub struct Array<'a> {
     /// Number of samples along each dimension, rows first.
@@ -71,7 +71,7 @@ pub fn array(array: &Array) -> Value {
 }
 
 /// The metadata of a group with these arrays. It includes a copy of the arrays' metadata (consolidated metadata of
-/// zarr-python), so that one file suffices; other readers read the metadata of each array.
+/// zarr-python), so that one file suffices for readers that support it; other readers read the metadata of each array.
 #[must_use]
 pub fn group(arrays: &[(String, Value)], attributes: Value) -> Value {
     let members: Map<String, Value> = arrays.iter().cloned().collect();

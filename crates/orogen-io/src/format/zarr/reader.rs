@@ -1,8 +1,8 @@
-//! Reading heights from Zarr arrays of versions 2 and 3: a folder that is an array, or a group with one.
+//! Reading heights from Zarr arrays of versions 2 and 3: a folder that is an array, or a group that contains one.
 //!
-//! In a group, the array `height` is read, otherwise the only two-dimensional one; of three dimensions, the first is
-//! the band. The position is taken from coordinate arrays with the names of its dimensions (`x`, `y`, `lon`, `lat`,
-//! ...), and the system from `crs_wkt`, `spatial_ref` or GDAL's `_CRS`.
+//! In a group, the array `height` is read, or else the only two-dimensional array. In an array of three dimensions, the
+//! first dimension is the band. The position is taken from coordinate arrays with the names of the dimensions (`x`,
+//! `y`, `lon`, `lat`, ...), and the coordinate system from `crs_wkt`, `spatial_ref` or GDAL's `_CRS`.
 
 use std::path::{Path, PathBuf};
 
@@ -68,7 +68,7 @@ impl From<Error> for ReadFault {
     }
 }
 
-/// An array as its metadata describes it.
+/// An array, as described by its metadata.
 struct Array {
     folder: PathBuf,
     shape: Vec<u64>,
@@ -78,7 +78,7 @@ struct Array {
     big_endian: bool,
     /// The codecs, in the order of decoding.
     codecs: Vec<Codec>,
-    /// The text between the numbers of a chunk's name, and before them.
+    /// The separator between the numbers of a chunk's name, and the prefix before them.
     separator: String,
     prefix: &'static str,
     fill: f64,
@@ -233,12 +233,12 @@ fn check(array: Array) -> std::result::Result<Array, String> {
 }
 
 impl Array {
-    /// Whether it has two dimensions, or three of which the first is the band.
+    /// Whether it has two dimensions, or three with the band as the first.
     fn is_map(&self) -> bool {
         matches!(self.shape.len(), 2 | 3)
     }
 
-    /// The bytes of a chunk's samples; `None` if the chunk is absent. `count` heights are held in addition.
+    /// The bytes of a chunk's samples; `None` if the chunk is absent. `count` heights are in memory in addition.
     fn chunk(&self, at: &[u64], count: usize, allowed: u64) -> std::result::Result<Option<Vec<u8>>, ReadFault> {
         let numbers: Vec<String> = at.iter().map(u64::to_string).collect();
         let name = match (self.prefix, self.separator.as_str()) {
@@ -309,7 +309,7 @@ fn open(folder: &Path, request: Request) -> std::result::Result<Dem, ReadFault> 
         whole: None,
     };
     let mut conversion = metadata.conversion(None)?;
-    // Absent chunks consist of the fill value: for floats it means no height, for integers it is a value.
+    // Absent chunks consist of the fill value: for floats it means no height, for integers it is an ordinary value.
     let [chunk_height, chunk_width] = [array.chunk[array.chunk.len() - 2], array.chunk[array.chunk.len() - 1]];
     let (first, layer) = match array.chunk[..] {
         [bands, ..] if array.chunk.len() == 3 => (Some(band / bands), (band % bands) * chunk_height * chunk_width),
@@ -400,7 +400,7 @@ fn place(
     Ok(None)
 }
 
-/// The first of evenly spaced numbers, and their distance.
+/// The first of evenly spaced numbers, and their distance; `None` if the spacing is not even.
 fn regular(line: &[f64]) -> Option<(f64, f64)> {
     let (first, last) = (*line.first()?, *line.last()?);
     let step = (last - first) / (line.len() as f64 - 1.0).max(1.0);
@@ -408,7 +408,7 @@ fn regular(line: &[f64]) -> Option<(f64, f64)> {
     (line.len() > 1 && step != 0.0 && even).then_some((first, step))
 }
 
-/// The coordinate system that an array states, itself or in the scalar array that it names as `grid_mapping`.
+/// The coordinate system that an array states itself, or in the scalar array that it names as `grid_mapping`.
 fn system(array: &Array, group: Option<&Path>) -> std::result::Result<Option<GeoKeys>, ReadFault> {
     let mut all = vec![array.attributes.clone()];
     let mapping = array.attributes["grid_mapping"].as_str().unwrap_or("spatial_ref");
