@@ -4,7 +4,8 @@
 
 use orogen::{Recipe, Sampler, Window, World};
 
-/// The cell is 1 m: one block. Valleys below sea level, hills, and mountains where a second noise selects them.
+/// The cell is 1 m, so a sample is a block. Valleys below sea level, hills, and mountains where a second noise selects
+/// them.
 const RECIPE: &str = r#"
     orogen = 1
     world = { seed = 4, sea_level = 62 }
@@ -39,7 +40,7 @@ struct Column {
 
 /// Returns the columns of the chunk at (`east`, `south`), in chunks. The result does not depend on order or threads.
 fn columns(ground: &Sampler<World>, east: i64, south: i64) -> orogen::Result<[[Column; SIDE]; SIDE]> {
-    // One more column on each side, for the slope at the chunk's border.
+    // One more column on each side, for the slope at the border of the chunk.
     let chunk = Window::new(SIDE, SIDE, 1.0).at(east * SIDE as i64, south * SIDE as i64);
     let heights = ground.window(&chunk.grown(1))?;
     let column = |i: usize, j: usize| {

@@ -3,8 +3,8 @@
 //! a system (`cargo xtask clients wasm`).
 //!
 //! The exit code is 0 if all bits are equal, else the number of the first preset that differs, counted from 1; 255 for
-//! any other error. `OROGEN_PRESETS`, when it is compiled, names the presets to make, separated by blanks; without it,
-//! all are made.
+//! any other error. The environment variable `OROGEN_PRESETS` at compile time names the presets to make, separated by
+//! blanks; without it, all presets are made.
 
 use std::process::ExitCode;
 
@@ -13,7 +13,7 @@ use orogen::{Level, Options, Session, Window, presets};
 
 const GOLDEN: &str = include_str!("../../../golden/presets.txt");
 
-/// The presets to make; none stands for all.
+/// The presets to make; `None` for all presets.
 const CHOSEN: Option<&str> = option_env!("OROGEN_PRESETS");
 
 fn main() -> ExitCode {
@@ -38,7 +38,7 @@ fn first_difference() -> Result<Option<u8>, Box<dyn std::error::Error>> {
             continue;
         }
         let world = Session::new(Options::default())?.open(preset.recipe()?)?;
-        // A world without bounds: this number of samples at its own cell size.
+        // An unbounded world: this number of samples at its own cell.
         let window = world.window_fitting(256).unwrap_or(Window::new(256, 256, world.recipe().world.cell));
         let hash = summary(world.window("height", &window)?.data(), 0.0).sha256;
         let expected = GOLDEN.lines().find_map(|line| line.strip_prefix(preset.name)?.strip_prefix(' '));

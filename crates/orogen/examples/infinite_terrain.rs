@@ -1,4 +1,4 @@
-//! Unbounded terrain: a viewer walks 10 km; chunks around it are loaded and unloaded, and are coarser with distance.
+//! Unbounded terrain: a viewer walks 10 km; chunks around it are loaded and unloaded, and are coarser in the distance.
 //!
 //! `cargo run --release --example infinite_terrain` prints the state after each kilometre and writes the last view to
 //! `infinite_terrain.png`.
@@ -10,7 +10,7 @@ use orogen::{ChunkId, ChunkStep, Grid, LodConfig, Recipe, Sampler, Window, World
 use std::collections::HashMap;
 use std::path::Path;
 
-/// A world without a `size` has no bounds. Plains with scattered mountains.
+/// A world without a `size` is unbounded. Plains with scattered mountains.
 const RECIPE: &str = r#"
     orogen = 1
     world = { seed = 11 }
@@ -69,7 +69,7 @@ fn walk(metres: f64) -> (f64, f64) {
     (metres * 0.8 + 600.0 * (1.0 - turn * turn), metres * 0.6)
 }
 
-/// The ground around the viewer as a map: each pixel from the chunk that covers it, with outlined chunks.
+/// Draws the ground around the viewer as a map: each pixel from the chunk that covers it, with outlined chunks.
 fn draw(scene: &HashMap<ChunkId, Grid>, lod: &LodConfig, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     const PIXELS: usize = 900;
     let (x, y) = walk(10_000.0);

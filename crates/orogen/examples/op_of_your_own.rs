@@ -27,7 +27,7 @@ orogen::op! {
 }
 
 impl Filter for Terraces {
-    /// A slope is known from the samples next to each one.
+    /// The slope of a sample depends on the samples next to it.
     fn halo(&self, _cell: f64) -> usize {
         1
     }
@@ -51,7 +51,7 @@ impl Filter for Terraces {
     }
 }
 
-/// Built-in ops and one of your own, side by side.
+/// Built-in ops and a custom one in the same recipe.
 const RECIPE: &str = r#"
     orogen = 1
     world = { seed = 7, size = 8000, cell = 20 }

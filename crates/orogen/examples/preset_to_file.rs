@@ -8,7 +8,7 @@ fn main() -> orogen::Result<()> {
     let world = orogen::open("alpine")?;
 
     // 20 km by 15 km around the middle, one sample every 25 m: sample (0, 0) of the window is sample (820, 930) of the
-    // grid. The extension determines the format.
+    // world's grid. The extension determines the format.
     let window = Window::new(800, 600, 25.0).at(820, 930);
     for (layer, file) in [("height", "alpine.tif"), ("height", "alpine.png"), ("hillshade", "hillshade.png")] {
         world.export(layer, &window, file)?;

@@ -5,8 +5,8 @@
 //! [`World`] is an opened recipe. It returns a [`Grid`] of heights for a [`Window`] of a layer, and exactly the same
 //! numbers for single points.
 //!
-//! A program beside a clone of Orogen depends on it with `cargo add orogen --path ../orogen/crates/orogen`. Build it
-//! with `--release`: code without optimization is slow.
+//! A program in a folder next to a clone of Orogen depends on it with `cargo add orogen --path
+//! ../orogen/crates/orogen`. Build it with `--release`: code without optimization is slow.
 //!
 //! # Five programs
 //!
@@ -33,7 +33,7 @@
 //! # Ok::<(), orogen::Error>(())
 //! ```
 //!
-//! **Terrain around a moving viewer.** [`Chunks`] tells which chunk to make or to drop next.
+//! **Terrain around a moving viewer.** [`Chunks`] says which chunk to make or to drop next.
 //!
 //! ```
 //! use orogen::{ChunkStep, LodConfig, Sampler};
@@ -85,15 +85,15 @@
 //!
 //! A grid holds the samples of a window row by row from the north-west corner: `tile[(i, j)]` is column `i` from the
 //! west and row `j` from the north, and `tile.data()[j * tile.width() + i]` is the same sample. [`Window::east`] and
-//! [`Window::south`] tell its position in metres from the origin of the world. Heights are `f32` metres; samples
-//! without a value, such as those of a file with gaps, are NaN.
+//! [`Window::south`] return its position in metres from the origin of the world. Heights are `f32` metres; samples
+//! without a value, such as gaps of a file, are NaN.
 //!
 //! # Locality
 //!
 //! A **field** depends on one position and the seed (noise, curves, warps). A **filter** depends on a finite halo
 //! (blur, slope). A **levelled** op depends on a finite halo of the next coarser level (`continents`, `amplify`). A
 //! **solver** depends on the whole bounded world and runs once (stream power, drainage). Therefore any tile equals the
-//! crop of the whole, bit for bit, for any tile size, number of threads, SIMD level and machine.
+//! same part of the whole, bit for bit, for any tile size, number of threads, SIMD level and machine.
 //!
 //! # Where to look
 //!

@@ -31,7 +31,7 @@ fn chunks_and_points_of_presets_allocate_nothing_once_warm() {
             let count = allocations(|| (1..6).for_each(|i| made(i * 300, 1000)));
             assert_eq!(count, 0, "{}: chunks of {cells} cells", preset.name);
         }
-        // In the smallest world, too.
+        // Also in the smallest world.
         let at = |i: i32| sampler.at(f64::from(i) * 3.3, 123.5).unwrap();
         at(0);
         assert_eq!(allocations(|| (1..20).for_each(|i| assert!(at(i).is_finite()))), 0, "{}: points", preset.name);
@@ -39,7 +39,7 @@ fn chunks_and_points_of_presets_allocate_nothing_once_warm() {
     assert!(seen > 3, "most presets end with fields or solvers");
 }
 
-/// Unbounded hills of fields only.
+/// Unbounded hills made of fields only.
 const FIELDS: &str = "
 orogen = 1
 world.cell = 15
@@ -67,7 +67,7 @@ fn volumes_of_fields_allocate_nothing_once_warm() {
     let mut made = |x, y| sampler.fill_volume(&chunk.at(x, y), &altitudes, &mut samples).unwrap();
     assert!(allocations(|| made(0, 0)) > 0, "the count works: the first chunk needs buffers");
     assert_eq!(allocations(|| (1..6).for_each(|i| made(i * 300, -1000))), 0);
-    // The density falls by a metre per metre, and noise is added to that.
+    // The density falls by one metre per metre of altitude, plus noise.
     assert!(samples[0] > samples[samples.len() - 1]);
 }
 

@@ -66,7 +66,7 @@ fn the_ground_in_range_is_covered_once_and_neighbors_differ_by_one_level() {
                 let covers = covering(&wanted, finest(&lod, place), 5);
                 assert_eq!(covers.len(), 1, "{at:?}: {place:?} is covered by {covers:?}");
                 let id = covers[0];
-                // At least as fine as configured, and not finer than the configuration plus slack.
+                // At least as fine as configured, and not finer than the configuration with its slack.
                 let distance = lod.distance(id, at);
                 assert!(id.level == 0 || distance >= detail * lod.side(id.level), "{id:?} at {distance} m is coarse");
                 let parent = id.parent();
@@ -101,7 +101,7 @@ fn chunks_come_nearest_first_and_leave_no_hole() {
             .filter(|place| !covering(&shown, *place, 5).is_empty() && !covering(&wanted, *place, 5).is_empty())
             .collect();
         let mut nearest = 0.0;
-        // Not all at once: the viewer moves on before all chunks are made.
+        // Only some of the chunks: the viewer moves on before all are made.
         for _ in 0..random_budget(number) {
             match chunks.next_step() {
                 Some(ChunkStep::Make(id)) => {
@@ -202,7 +202,7 @@ fn every_chunk_is_the_window_and_shares_its_borders() {
             for (id, grid) in near {
                 let window = chunks.window(*id);
                 assert_eq!(grid, &world.window("height", &window).unwrap(), "{op} {id:?}");
-                // Points evaluate filters at the world's cell size, which is that of level 0.
+                // Points evaluate filters at the world's cell, which is the cell of level 0.
                 if id.level == 0 {
                     let height = world.height(window.east(5), window.south(3)).unwrap();
                     assert_eq!(height.to_bits(), grid[(5, 3)].to_bits(), "{op} {id:?}");
@@ -217,8 +217,8 @@ fn every_chunk_is_the_window_and_shares_its_borders() {
                 if let Some(south) = made.get(&id.beside(0, 1)) {
                     assert!((0..9).all(|i| grid[(i, 8)].to_bits() == south[(i, 0)].to_bits()), "{op} {id:?}");
                 }
-                // A filter softens the inputs of nodes. Its result depends on the cell size: levels agree for fields
-                // only.
+                // The inputs of nodes are filtered, and the result of a filter depends on the cell, so levels agree for
+                // fields only.
             }
             assert!(met > 10, "{met} neighbors met");
         }
@@ -240,7 +240,7 @@ fn chunks_of_bounded_worlds_are_windows_too() {
         let (world, sampler) = (open(&recipe, 2), Sampler::new(open(&recipe, 1), "height").unwrap());
         let lod = LodConfig::default().with_cells(8).with_cell(10.24).with_levels(3).with_range(5000.0);
         let mut chunks = world.chunks(lod).unwrap();
-        // Outside a corner: chunks of every level; those at the far edges are clipped.
+        // Near a corner outside of the world, chunks of every level; chunks at the far edges are clipped.
         chunks.set_viewer(1000.0, 900.0).unwrap();
         let mut levels = [0; 3];
         while let Some(id) = chunks.take() {

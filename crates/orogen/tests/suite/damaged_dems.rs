@@ -6,7 +6,7 @@ use orogen::io::format::{Request, Sidecar, import};
 use std::io::Cursor;
 use std::path::PathBuf;
 
-/// Changes bytes of a file at random, as damage or an attack may do.
+/// Changes bytes of a file at random, like damage or an attack.
 fn damage(bytes: &mut Vec<u8>, random: &mut Random) {
     for _ in 0..=random.below(3) {
         let length = bytes.len() as u64;

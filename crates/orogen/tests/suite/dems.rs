@@ -105,7 +105,7 @@ fn a_band_of_several_is_chosen() {
     let why = import::read(&corpus().join("arc.asc"), Request::new(1 << 20).with_band(Some(2))).unwrap_err();
     assert!(why.to_string().contains("one band, not a band 2"), "{why}");
     same("lossy-lerc.tif", &read("lossy-lerc.tif"), 0.25, 0.5, false);
-    // In a recipe, and after a colon.
+    // By a recipe key, and after a colon in the path.
     let of_node = world(Node { band: 2, ..node("bands.tif") }, None);
     assert_eq!(of_node.height(30.0, 60.0).unwrap(), 1000.0 + formula(1, 2));
     let ground = PreparedDem::read(&corpus().join("bands-lerc.tif:2"), None, 1 << 20).unwrap();
@@ -121,7 +121,7 @@ fn what_stands_beside_a_file_tells_its_place() {
         assert_eq!(keys::epsg(&place.keys.unwrap()), Some(32632), "{name}");
         assert!(dem.notes.is_empty());
     }
-    // Without a coordinate system the same numbers are metres; an unknown system is reported in a note.
+    // Without a coordinate system the same numbers are metres; an unknown coordinate system is reported in a note.
     let folder = TestFolder::new("dems-beside").unwrap();
     std::fs::copy(corpus().join("arc.asc"), folder.join("a.asc")).unwrap();
     std::fs::write(folder.join("a.prj"), "LOCAL_CS[\"mine\"]").unwrap();
@@ -134,12 +134,12 @@ fn what_stands_beside_a_file_tells_its_place() {
     );
 }
 
-/// The bits of heights: NaN is a value like others.
+/// The bits of heights, so that NaN can be compared too.
 fn bits(heights: &[f32]) -> Vec<u32> {
     heights.iter().map(|height| height.to_bits()).collect()
 }
 
-/// The samples of a whole file in a part of it.
+/// The samples of a whole file that belong to a part of it.
 fn crop(whole: &Dem, part: Part) -> Vec<f32> {
     let rows = whole.heights.chunks(whole.width).skip(part.from[1]).take(part.size[1]);
     rows.flat_map(|row| &row[part.from[0]..part.from[0] + part.size[0]]).copied().collect()
@@ -176,7 +176,7 @@ fn a_part_of_a_file_has_the_bits_of_the_whole() {
         }
         let beyond = request.with_part(Some(Part { from: [1, 0], size: [width, 1] }));
         assert!(import::read(&path, beyond).unwrap_err().to_string().contains("others were asked for"));
-        // Filled, and on square cells.
+        // With holes filled, and on square cells.
         let name = bands.map_or(path.clone(), |band| format!("{}:{band}", path.display()).into());
         let whole = PreparedDem::read(&name, None, 1 << 20).unwrap();
         if whole.georeference.is_none() {
@@ -207,7 +207,7 @@ fn a_part_of_a_file_has_the_bits_of_the_whole() {
     assert!(PreparedDem::outline(&corpus().join("arc.asc")).unwrap().is_none());
 }
 
-/// A file whose bytes are counted as they are read.
+/// A file that counts the bytes that are read.
 struct Counted<'a>(Cursor<&'a [u8]>, usize);
 
 impl std::io::Read for Counted<'_> {
@@ -253,7 +253,7 @@ fn a_part_of_a_file_takes_its_blocks_alone() {
     let (dem, some) = taken(Some(part));
     let inside = Window { width: 100, height: 60, ..*grid.window() }.at(250, 130);
     assert_eq!(dem.heights, grid.crop(&inside).unwrap().data());
-    // Three by one of ten by eight tiles, and the directories.
+    // Three of eighty tiles, and the directories.
     assert!(some < whole / 8, "{some} of {whole} bytes");
 
     let folder = TestFolder::new("dems-part").unwrap();
@@ -266,7 +266,7 @@ fn a_part_of_a_file_takes_its_blocks_alone() {
         let inside = window.intersection(grid.window());
         assert_eq!(bits(part.grid.data()), bits(whole.grid.crop(&inside).unwrap().data()), "{window:?}");
     }
-    // A small hole is filled from its surroundings alone.
+    // A small hole is filled only from its surroundings.
     assert!(PreparedDem::part(&path, &Window::new(30, 30, 30.0).at(60, 75), 300 << 10).is_ok());
 }
 
@@ -287,7 +287,7 @@ fn a_world_of_a_part_has_the_bits_of_the_whole_or_asks_for_it() {
     let part = open(PreparedDem::part(&path, &held, 8 << 20).unwrap().unwrap());
     let whole = open(PreparedDem::read(&path, None, 8 << 20).unwrap());
     assert_eq!(part.full_window(30.0).unwrap(), whole.full_window(30.0).unwrap());
-    // At the cell of the file and at others, and at its eastern end.
+    // At the cell of the file and at other cells, and at the eastern end of the file.
     for (layer, window) in [
         ("height", held.shrunk(4)),
         ("height", Window::new(20, 12, 100.0).at(158, 10)),
@@ -313,7 +313,7 @@ fn tiles_are_one_place() {
             let (i, j) = (k % 37, k / 37);
             match i < 20 || j < 12 {
                 true => assert_eq!(*height, formula(i, j) + 0.25, "{name} at ({i}, {j})"),
-                // No tile lies here: the virtual raster has no nodata value, so GDAL reads 0.
+                // There is no tile here. The virtual raster has no nodata value, so GDAL reads 0.
                 false if name == "tiles.vrt" => assert_eq!(*height, 0.0, "({i}, {j})"),
                 false => assert!(height.is_nan(), "{name}: no tile lies at ({i}, {j})"),
             }
@@ -345,7 +345,7 @@ fn tiles_are_one_place() {
 
 #[test]
 fn files_that_lie_otherwise_are_understood_or_refused() {
-    // This file gives the position of the sample itself instead of its pixel's corner: the result is the same.
+    // This file states the position of the sample itself instead of the corner of its pixel; the result is the same.
     assert_eq!(read("point.tif").place.unwrap().origin, [500015.0, 5199985.0]);
     let south_up = read("south-up.tif");
     assert_eq!((south_up.heights[36], south_up.heights[22 * 37]), (formula(36, 22), formula(0, 0)));
@@ -368,7 +368,7 @@ fn files_that_lie_otherwise_are_understood_or_refused() {
 
 #[test]
 fn what_other_files_state_is_read_as_gdal_reads_it() {
-    // Feet by the unit of the heights, and by the code of the vertical system alone.
+    // Feet, stated by the unit of the heights or only by the code of the vertical system.
     let highest = |name: &str| read(name).heights.iter().copied().fold(f32::MIN, f32::max);
     assert_eq!((highest("feet.tif"), highest("feet-by-code.tif")), (213.36, 213.360_43));
     let zero = read("absent.tif");
@@ -440,7 +440,7 @@ fn node(name: &str) -> Node {
 fn a_dem_is_a_field() {
     let file = world(Node { at: [60.0, -30.0], scale: 2.0, offset: 5.0, ..node("f32-strips.tif") }, None);
     let grid = file.window("height", &Window::new(20, 10, 30.0)).unwrap();
-    // Column 2 is the file's column 0, row 0 its row 1; its border goes on beyond it.
+    // Column 2 is the file's column 0, and row 0 is its row 1. The file's border is repeated beyond it.
     assert_eq!(grid[(6, 4)], 2.0 * (formula(4, 5) + 0.25) + 5.0);
     assert_eq!(grid[(0, 4)], 2.0 * (formula(0, 5) + 0.25) + 5.0);
     let faded = world(Node { fade: 100.0, outside: -50.0, ..node("f32-strips.tif") }, None);

@@ -31,7 +31,7 @@ fn every_setting_is_a_valid_recipe() {
 
 #[test]
 fn a_place_of_any_cell_is_fitted() {
-    // At cells of decimetres many parameters make land without relief, or heights beyond all numbers.
+    // At cells of decimetres many parameters give land without relief, or infinite heights.
     for cell in [0.1, 0.3, 1000.0] {
         let mut place = Grid::filled(Window::new(72, 72, cell), 0.0f32);
         for (k, height) in place.data_mut().iter_mut().enumerate() {
@@ -50,7 +50,7 @@ fn a_place_of_any_cell_is_fitted() {
 
 #[test]
 fn the_search_comes_nearer_and_meets_slope_and_hypsometry() {
-    // A target that the template can make: another seed of one of its candidates.
+    // A target that the template can reproduce: one of its candidates with another seed.
     let hidden: ParamValues = [0.6, 0.55, 0.5, 0.4, 0.6, 0.6, 0.5, 0.4, 0.4];
     let stretch = Stretch { from: [-400.0, 600.0], to: [200.0, 1400.0], bend: 0.8 };
     let place = land(&hidden, &stretch, 99);
@@ -61,7 +61,7 @@ fn the_search_comes_nearer_and_meets_slope_and_hypsometry() {
     let (first, better) = (at(1, 0), at(12, 6));
     assert!(better.distance <= first.distance, "{} {}", better.distance, first.distance);
     assert_eq!(at(3, 2).values, at(3, 2).values);
-    // Other seeds of the fitted recipe are nearer than land with the same relief and no valleys.
+    // Other seeds of the fitted recipe are closer than land with the same relief and no valleys.
     let distance = |grid: &Grid| {
         let windows = of_windows(grid, target.side, 4);
         windows.iter().map(|window: &FeatureVector| window.distance(&target.middle)).sum::<f64>() / windows.len() as f64
@@ -106,7 +106,7 @@ fn a_world_of_a_fitted_recipe_has_no_rim() {
             }
             borders.push(border.0 / f64::from(border.1) / (inside.0 / f64::from(inside.1)));
         }
-        // Solved for the world alone, the border would be at least half as steep again as the inside.
+        // If only the world itself were solved, the border would be more than half as steep again as the inside.
         let mean = borders.iter().sum::<f64>() / borders.len() as f64;
         assert!((0.8..1.2).contains(&mean), "{size:?}: {borders:?}");
     }

@@ -3,7 +3,7 @@
 use orogen::grid::resample::{self, LayerKind};
 use orogen::{Grid, Options, Points, Progress, Session, Window, World, presets};
 
-/// What a view shows.
+/// The layers of a view.
 const LAYERS: [&str; 3] = ["height", "flow", "receiver"];
 
 fn endless() -> World {
@@ -11,7 +11,7 @@ fn endless() -> World {
     session.open(presets::find("endless").unwrap().recipe().unwrap()).unwrap()
 }
 
-/// A straight flight: square views, each a step further than the one before.
+/// A straight flight: square views, each one step further than the previous one.
 #[derive(Debug)]
 struct Flight {
     cell: f64,
@@ -19,7 +19,7 @@ struct Flight {
     side: usize,
     /// First sample of the first view.
     start: [i64; 2],
-    /// Samples from one view to the next.
+    /// Step from one view to the next, in samples.
     step: [i64; 2],
     kilometres: f64,
 }
@@ -32,8 +32,8 @@ impl Flight {
         (0..=count).map(move |k| Window::new(side, side, cell).at(x + k * east, y + k * south))
     }
 
-    /// Makes the views in two sessions in turn, so that successive ones share nothing, and compares them where they
-    /// overlap. Returns the number of views and of samples that were compared.
+    /// Makes the views alternately in two sessions, so that successive views share nothing, and compares them where
+    /// they overlap. Returns the number of views and of samples that were compared.
     fn run(&self) -> (usize, usize) {
         let worlds = [endless(), endless()];
         let mut last: Option<Vec<Grid>> = None;
@@ -58,7 +58,7 @@ impl Flight {
     }
 }
 
-/// The difference of a level from the next finer one at the samples that both have.
+/// The difference between a level and the next finer one at their common samples.
 #[derive(Debug)]
 struct Change {
     cell: f64,
@@ -68,7 +68,7 @@ struct Change {
     relief: f64,
 }
 
-/// Zooms in to places, from level to level: every view has half the width of the one before.
+/// Zooms in at positions, from level to level: every view has half the width of the previous one.
 fn zoom(cells: impl Iterator<Item = f64>, side: usize, places: &[[f64; 2]]) -> Vec<Change> {
     let world = endless();
     let mut changes = Vec::new();
@@ -136,7 +136,7 @@ fn a_thousand_kilometres_without_a_pop() {
     zoom_without_a_pop(40, 128);
 }
 
-/// Between two levels a zoom shows the finer one, and below the finest that one, interpolated.
+/// Between two levels, a zoom shows the finer one; below the finest level, it shows that level interpolated.
 #[test]
 fn views_between_two_levels_show_the_finer() {
     let world = endless();

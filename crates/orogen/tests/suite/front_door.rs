@@ -1,4 +1,4 @@
-//! `orogen::open` and `World::export`: what most programs begin with.
+//! `orogen::open` and `World::export`: the entry points of most programs.
 
 use orogen::export::{ExportJob, of_path};
 use orogen::io::file::OutputPolicy;
@@ -33,7 +33,7 @@ fn a_world_opens_by_the_name_of_a_preset_of_a_recipe_file_and_of_a_file_of_heigh
 fn an_export_in_one_call_is_that_of_a_job_whose_recipe_was_prepared_first() {
     let folder = TestFolder::new("front-door-export").unwrap();
     let window = Window::new(40, 30, 120.0).at(20, 20);
-    // A recipe with classes and scattered objects, and layers with and without nodes of their own.
+    // A recipe with classes and scattered objects, and layers with and without appended nodes.
     let world = orogen::open("island").unwrap();
     for (layer, file) in [
         ("height", "a.npy"),

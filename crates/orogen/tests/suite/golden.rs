@@ -63,7 +63,7 @@ fn every_preset_makes_its_golden_bits_on_one_thread_and_two() {
             let recipe = preset.recipe().unwrap_or_else(|error| panic!("{error}"));
             let options = Options { threads: Some(threads), ..Options::default() };
             let world = World::with_options(recipe, options).unwrap();
-            // A world without bounds: this number of samples at its own cell size.
+            // An unbounded world: this number of samples at its own cell.
             let cell = world.recipe().world.cell;
             let window = world.window_fitting(256).unwrap_or(Window::new(256, 256, cell));
             let grid = world.window("height", &window).unwrap();

@@ -1,4 +1,4 @@
-//! Random graphs: whatever valid recipe it is, the bits of a window do not depend on how it is made.
+//! Random graphs: for any valid recipe, the bits of a window do not depend on how it is made.
 
 mod grown;
 mod values;
@@ -24,7 +24,7 @@ fn three_random_graphs_keep_their_bits() {
     check(0..3);
 }
 
-/// `OROGEN_GRAPHS=17..18` makes graph 17 alone.
+/// `OROGEN_GRAPHS=17..18` runs only graph 17.
 #[test]
 #[ignore = "long: a thousand random graphs, each made in thirty ways"]
 fn a_thousand_random_graphs_keep_their_bits() {
@@ -57,7 +57,7 @@ fn check(seeds: Range<u64>) {
     }
     println!("{tally:?}");
     assert!(broken.is_empty(), "graphs {broken:?}");
-    // Of the nodes that are drawn at most a third is left out, and no op always is.
+    // At most a third of the drawn nodes is left out, and no op is always left out.
     let left_out = tally.refused + tally.expensive;
     assert!(3 * left_out < tally.nodes + left_out + 100, "{tally:?}");
     assert!(!is_whole || ops.len() == Node::all().len(), "{ops:?}");
@@ -69,7 +69,7 @@ fn made(world: &World, window: &Window) -> Result<Vec<Grid>> {
     world.grids(&layers, window, &Progress::none())
 }
 
-/// Whether parts have the bits of the whole.
+/// Checks that parts have the bits of the whole.
 fn same(what: &str, whole: &[Grid], parts: &[Grid]) {
     assert_eq!(whole.len(), parts.len(), "{what}");
     for (layer, (whole, part)) in whole.iter().zip(parts).enumerate() {
@@ -109,7 +109,7 @@ fn keeps_its_bits(graph: &Grown, seed: u64, tally: &mut Tally) {
         let alone = with_threads(2).window(layer, window).unwrap();
         self::same("alone", &whole[k..=k], &[alone]);
     }
-    // Windows of the whole, of a new world and of one that has made others.
+    // Windows of the whole, made by a new world and by one that has made other windows.
     for k in 0..4 {
         let part = part(window, &mut random);
         let world = if k < 2 { &with_threads(2) } else { &world };
@@ -149,7 +149,7 @@ fn part(whole: &Window, random: &mut Random) -> Window {
     Window::new(width, height, whole.cell).at(whole.x + x, whole.y + y)
 }
 
-/// A recipe that was written and read, as TOML and as JSON, is the same one, and so is a plan.
+/// A recipe that is written and read again, as TOML and as JSON, is the same, and so is a plan.
 fn texts(recipe: &Recipe, window: &Window, same: &dyn Fn(&str, Result<Vec<Grid>>)) {
     let toml = recipe.to_toml();
     let from_toml = Recipe::parse(&toml, "graph").unwrap();
@@ -168,8 +168,8 @@ fn texts(recipe: &Recipe, window: &Window, same: &dyn Fn(&str, Result<Vec<Grid>>
     same("solutions on disk", World::open(recipe.clone()).unwrap().run(&plan, &Progress::none()));
 }
 
-/// Under a memory limit a window has the same bits, or is refused before the work. The memory that a refusal names is
-/// enough.
+/// Under a memory limit a window has the same bits, or is refused before the work starts. The memory that a refusal
+/// names is enough.
 fn limits(recipe: &Recipe, window: &Window, same: &dyn Fn(&str, Result<Vec<Grid>>), tally: &mut Tally) {
     let limited = |bytes: u64| {
         let options = Options { threads: Some(2), memory: Budget::of(bytes), ..Options::default() };
@@ -191,7 +191,7 @@ fn limits(recipe: &Recipe, window: &Window, same: &dyn Fn(&str, Result<Vec<Grid>
     }
 }
 
-/// Files, too, are refused under a memory limit.
+/// Whether an error is about memory. Files are also refused under a memory limit.
 fn is_for_memory(error: &Error) -> bool {
     error.kind() == ErrorKind::Memory || error.kind() == ErrorKind::File && error.to_string().contains("memory")
 }

@@ -6,7 +6,7 @@ use orogen::io::test_folder::TestFolder;
 use orogen::{Grid, Recipe, Window, World};
 use std::path::Path;
 
-/// 0, 1, 2 ... 19 over 19, row after row.
+/// A picture with the values 0, 1/19, 2/19 ... 1, row by row.
 fn greys() -> Grid {
     Grid::from_data(Window::new(5, 4, 1.0), (0..20).map(|k| k as f32).collect()).unwrap()
 }
@@ -32,7 +32,7 @@ fn pixels_stand_where_they_are_laid() {
             _ => png::write_grey16(&mut bytes, &grid, &levels, &[]).unwrap(),
         }
         std::fs::write(folder.join("mask.png"), &bytes).unwrap();
-        // 25 m from pixel to pixel, the first at (100, -50).
+        // 25 m from pixel to pixel, with the first pixel at (100, -50).
         let world = opened(&folder, "at = [100, -50]\nwidth = 100\noutside = 0.25").unwrap();
         for j in 0..4 {
             for i in 0..5 {

@@ -1,4 +1,4 @@
-//! Filling and drainage on disk, tile by tile, equal those in memory bit for bit.
+//! Filling and drainage on disk, tile by tile, are bit-identical to filling and drainage in memory.
 
 use orogen::{Budget, Options, Progress, Recipe, Window, World};
 
@@ -79,7 +79,7 @@ fn compare(width: usize, height: usize, over: &str, memory: Option<u64>) {
 
 #[test]
 fn drainage_on_disk_is_that_in_memory() {
-    // Tiles have 256 cells a side.
+    // Tiles have 256 cells per side.
     compare(600, 530, "bed", None);
     compare(300, 800, "surface", None);
 }

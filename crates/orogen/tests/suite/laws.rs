@@ -105,7 +105,7 @@ fn forty_diamonds_cost_forty_evaluations() {
 
 #[test]
 fn a_chain_of_ten_thousand_nodes_runs() {
-    // On a thread with a small stack: no recursion along the chain.
+    // On a thread with a small stack, to prove that there is no recursion along the chain.
     let work = || {
         let mut recipe = Recipe::new(WorldSpec::default());
         recipe.add("n0", Perlin::default());
@@ -202,7 +202,7 @@ fn layers_are_read_by_name_and_only_those_wanted_are_made() {
     };
     assert!(matches!(out.as_slice(), [None, None, Some(_)]), "{}", world.explain(&plan).unwrap());
     assert!(world.explain(&plan).unwrap().contains("apply `s` (south)"), "{}", world.explain(&plan).unwrap());
-    // The layer is the rise per metre; together with its neighbor it gives the whole slope.
+    // The layer is the rise per metre; with the other slope layer it gives the whole slope.
     let source = world.window("a", &window.grown(1)).unwrap();
     let [east, south] = ["s.east", "s.south"].map(|layer| world.window(layer, &window).unwrap());
     let steep = (source[(5, 6)] - source[(5, 4)]) / 20.0;
@@ -229,7 +229,7 @@ fn a_plan_is_a_value_that_can_be_sent() {
     let came = serde_json::from_str(&sent).unwrap();
     assert_eq!(plan, came);
     assert_eq!(world.run(&came, &Progress::none()).unwrap()[0], world.window("height", &window).unwrap());
-    // Damage anywhere is detected before any number is used; so is a plan of another version.
+    // Damage anywhere is detected before any number is used; a plan of another version is rejected as well.
     let damaged = |from: &str, to: &str| {
         assert!(sent.contains(from), "{from} in {sent}");
         serde_json::from_str::<Plan>(&sent.replacen(from, to, 1)).unwrap_err().to_string()
@@ -241,11 +241,11 @@ fn a_plan_is_a_value_that_can_be_sent() {
     }
     let version = format!("\"orogen\":\"{}\"", env!("CARGO_PKG_VERSION"));
     assert!(damaged(&version, "\"orogen\":\"0.0.9\"").contains("made by Orogen 0.0.9"));
-    // The format of plans from before they had a number.
+    // A plan from before the format had a number.
     assert!(damaged("\"format\":4,", "").contains("has format 1, this version reads format 4"));
-    // A plan of another recipe, or of this one before it was edited.
+    // A plan of another recipe, or of this recipe before it was edited.
     let edited = World::open(Recipe::parse(&text.replace("\"blur\"", "\"blur\"\nradius = 35"), "t").unwrap()).unwrap();
-    // Of no node at all: a plan's nodes are not those of another recipe.
+    // A recipe without nodes: a plan's nodes are not nodes of another recipe.
     let bare = Recipe::parse("orogen = 1\n[world]\ncell = 10\n[outputs]\nheight = 5", "t").unwrap();
     for other in [edited, World::open(bare).unwrap()] {
         let refusals = [
@@ -263,7 +263,8 @@ fn a_plan_is_a_value_that_can_be_sent() {
     }
 }
 
-/// Everything that changes a node's samples changes its content key: stored solutions and cached grids are never stale.
+/// Everything that changes a node's samples changes its content key, so stored solutions and cached grids are never
+/// stale.
 #[test]
 fn content_keys_hold_all_that_a_node_reads_of_the_world() {
     let nodes = Node::all();
@@ -349,7 +350,7 @@ fn cancelled_work_stops() {
 
 #[test]
 fn one_world_serves_many_threads_at_once() {
-    // Requests from the threads of a pool, each waiting for solvers that need threads too.
+    // Requests from the threads of a pool; each waits for solvers that also need threads.
     let world = open(&recipe_of(&Node::named("bake").unwrap(), world_of(10.0), false), 2);
     let window = Window::new(40, 40, 10.0).at(7, 9);
     let expect = world.window("height", &window).unwrap();

@@ -1,4 +1,4 @@
-//! Tiles of levels: made once in a session, kept for later runs, and the same bits wherever they come from.
+//! Tiles of levels: made once in a session and kept for later runs, with the same bits wherever they come from.
 
 use orogen::io::read_at::ReadAt;
 use orogen::io::test_folder::TestFolder;
@@ -40,7 +40,7 @@ orogen::op! {
 
 type Hook = Arc<dyn Fn(&Context) -> Result<()> + Send + Sync>;
 
-/// Hooks by their number: one for each test, because tests run side by side.
+/// Hooks by number: one for each test, because tests run in parallel.
 static HOOKS: Mutex<Option<HashMap<u64, Hook>>> = Mutex::new(None);
 
 fn set_hook(number: u64, hook: impl Fn(&Context) -> Result<()> + Send + Sync + 'static) {
@@ -158,7 +158,7 @@ fn same(a: &Grid, b: &Grid) -> bool {
     a.window() == b.window() && bits(a) == bits(b)
 }
 
-/// Windows of all levels and between them, which share tiles.
+/// Windows of all levels and between levels, which share tiles.
 fn windows() -> [Window; 6] {
     [
         Window::new(90, 70, 10.0).at(-30, -40),
@@ -183,7 +183,8 @@ fn requests_at_once_make_each_tile_once() {
     assert!(tiles > 20, "{tiles}");
     windows().iter().for_each(|window| _ = made(&serial, HOOK, window));
     assert_eq!(serial.level_tiles_made(), tiles, "all are kept");
-    // Threads of the program, and of another pool, where a thread that waits may be given the work of another request.
+    // Threads of the program, and threads of another pool, where a waiting thread may be given the work of another
+    // request.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
     for threads in [1, 2] {
         let options = Options { threads: Some(threads), kept_grids: Some(0), ..Options::default() };
@@ -389,7 +390,7 @@ fn sessions_that_share_a_folder_at_once_make_the_same_bits_within_its_limit() {
     }
 }
 
-/// A store of a program that counts what it is asked for.
+/// A store that counts requests.
 #[derive(Debug)]
 struct Counting {
     behind: MemoryStore,
@@ -445,16 +446,16 @@ fn only_stores_that_keep_tiles_get_those_that_are_worth_it() {
     let others = store(false);
     run(others.clone(), sums(), None);
     assert_eq!(counts(&others), (0, false));
-    // Made as quickly as it is read.
+    // Tiles that are made as quickly as they are read.
     let cheap = store(true);
     run(cheap.clone(), Sums { cost: 20.0, ..sums() }, None);
     assert_eq!(counts(&cheap), (0, false));
-    // A request that takes less than the store wants.
+    // A request that takes less time than the store requires.
     let folder = TestFolder::new("level-tiles-quick").unwrap();
     let patient = FolderStore { slower_than: Duration::from_secs(3600), ..stored(&folder) };
     run(Arc::new(patient), sums(), None);
     assert!(entries(&folder).is_empty());
-    // A session without its store.
+    // A session whose store was removed.
     let folder = TestFolder::new("level-tiles-without").unwrap();
     let session = session(Some(Arc::new(stored(&folder)))).with_empty_store();
     assert!(same(&made(&session, HOOK, &window), &expect) && entries(&folder).is_empty());

@@ -17,7 +17,7 @@ use serde_json::Value;
 
 pub type V3 = [f64; 3];
 
-/// A bump in the north-east of land that falls to the south: every mirror image and shift differs.
+/// A bump in the north-east of land that falls to the south, so that every mirror image and shift differs.
 pub fn land(width: usize, height: usize) -> Grid {
     let mut grid = Grid::filled(Window::new(width, height, 12.5).at(40, -30), 0.0);
     for j in 0..height {

@@ -1,5 +1,5 @@
-//! Windows that share a row or a column of samples agree there: colors and textures of meshes, normals of an engine's
-//! tiles.
+//! Windows that share a row or a column of samples agree there: colors and textures of meshes, normals of tiles for
+//! engines.
 
 use std::path::Path;
 

@@ -1,21 +1,22 @@
-//! Peak memory of a process that runs a plan, beside the memory that the plan states. The system reports the peak.
+//! Peak memory of a process that runs a plan, compared with the memory that the plan states. The peak comes from the
+//! system.
 
 use crate::support::{open, recipe_of, world_of};
 use orogen::node::Node;
 use orogen::{Progress, Window, World, presets};
 use std::process::Command;
 
-/// What a process takes beside its plan: the program, and the threads' stacks.
+/// Memory of a process in addition to its plan: the program, and the stacks of the threads.
 const BESIDE: u64 = 16 << 20;
 
-/// Tells a process of the test's own program what to run: a preset or `op NAME`, and the least memory of its plan in
-/// bytes.
+/// Environment variable that tells a child process of this test what to run: a preset or `op NAME`, and the minimum
+/// memory of its plan in bytes.
 const JOB: &str = "OROGEN_PEAK_JOB";
 
-/// The most samples along a side.
+/// Maximum number of samples along a side.
 const LARGEST: usize = 8192;
 
-/// Samples along a side of an op's world.
+/// Number of samples along a side of the world of an op.
 const SIDE: usize = 1024;
 
 /// A run: samples along the longer side, memory of the plan and peak of the process in bytes.
@@ -25,7 +26,7 @@ struct Run {
     peak: u64,
 }
 
-/// An op in a world of its own, with inputs of noise.
+/// A separate world for an op, with noise as inputs.
 fn world_of_op(name: &str) -> World {
     let node = Node::all().into_iter().find(|node| node.spec().op == name).unwrap();
     let mut spec = world_of(10.0);
@@ -33,7 +34,7 @@ fn world_of_op(name: &str) -> World {
     open(&recipe_of(&node, spec, false), 2)
 }
 
-/// The five ops that take the longest for a sample.
+/// The five ops with the longest time per sample.
 fn expensive_ops() -> Vec<String> {
     let mut works: Vec<(f64, String)> = Node::all()
         .iter()
@@ -48,7 +49,7 @@ fn expensive_ops() -> Vec<String> {
     works.into_iter().take(5).map(|(_, name)| name).collect()
 }
 
-/// Runs a job in this process, and prints the figures.
+/// Runs a job in this process, and prints the results.
 fn run(job: &str) {
     let (name, least) = job.rsplit_once(' ').unwrap();
     let least: u64 = least.parse().unwrap();
@@ -59,7 +60,7 @@ fn run(job: &str) {
     let (mut side, mut plan);
     side = 512;
     loop {
-        // An unbounded world has no size that a window could fit.
+        // An unbounded world has no size to fit a window to.
         let window = world.window_fitting(side);
         let window = window.unwrap_or_else(|_| Window::new(side, side, world.recipe().world.cell));
         plan = world.plan(&["height"], &window).unwrap();
@@ -77,12 +78,12 @@ fn run(job: &str) {
     println!("\nmeasured {side} {stated} {}", peak << 10);
 }
 
-/// The figures of a job in a process of its own.
+/// The results of a job in a separate process.
 fn measured(name: &str, least: u64) -> Run {
     let mut command = Command::new(std::env::current_exe().unwrap());
     command.args(["--exact", "peaks::plans_of_some_presets_keep_their_memory", "--nocapture"]);
-    // Blocks that are freed go back to the system at once. Otherwise glibc's allocator keeps freed blocks of up to 32
-    // MiB for later, which a plan does not know: up to 46 MiB with the presets.
+    // Freed blocks are returned to the system at once. Otherwise glibc's allocator keeps freed blocks of up to 32 MiB
+    // for later, which a plan cannot know: up to 46 MiB with the presets.
     command.env("MALLOC_MMAP_THRESHOLD_", "131072");
     let output = command.env(JOB, format!("{name} {least}")).output().unwrap();
     let text = String::from_utf8_lossy(&output.stdout);
@@ -109,7 +110,7 @@ fn check(names: &[String], least: u64) {
 
 #[test]
 fn plans_of_some_presets_keep_their_memory() {
-    // The same test is the process that runs a plan.
+    // The child process runs this same test.
     if let Ok(job) = std::env::var(JOB) {
         return run(&job);
     }

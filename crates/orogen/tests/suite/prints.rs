@@ -1,4 +1,4 @@
-//! Solids for 3D printing: closed, facing outwards, and of the size they say.
+//! Solids for 3D printing: closed, facing outwards, and of the stated size.
 
 use crate::meshes::{V3, cross, dot, f32s, land, minus, shapes, surface, wide};
 use orogen::output::mesh::solid::Print;
@@ -6,7 +6,7 @@ use orogen::output::mesh::{Shape, Solid, Surface, adaptive, stl};
 use orogen::{Grid, Progress, Window};
 use std::collections::BTreeMap;
 
-/// Checks that a solid, as an .stl file holds it, is closed and faces outwards; returns its volume and its bounds.
+/// Checks that a solid, as stored in an .stl file, is closed and faces outwards; returns its volume and its bounds.
 fn closed(solid: &Solid) -> (f64, [V3; 2]) {
     let mut bytes = Vec::new();
     stl::write(&mut bytes, solid, &Progress::none()).unwrap();
@@ -94,8 +94,8 @@ fn land_above_a_cut_has_its_outline_and_a_base_there() {
             // Two cones of 8 mm on cylinders of 2 mm with a radius of 13.3 mm.
             near(volume, 2.0 * std::f64::consts::PI * 13.33 * 13.33 * (2.0 + 8.0 / 3.0), 60.0);
         }
-        // At the level of the ground and at that of the pass, where vertices are on the cut; below all of it, and
-        // above.
+        // At the level of the ground and at that of the pass, where vertices are on the cut; through the hills; and
+        // below everything.
         for level in [0.0, 10.0, 25.0, -5.0] {
             closed(&cut(level).unwrap());
         }
@@ -127,7 +127,7 @@ fn a_hollow_solid_has_walls_and_a_ceiling_everywhere() {
             let ((all, bounds), (left, hollow_bounds)) = (closed(&full), closed(&hollow));
             assert_eq!(bounds, hollow_bounds);
             assert!(left < 0.85 * all, "{left} {all}");
-            // Vertices of the cavity are those that are not below, on or beside the surface.
+            // Vertices of the cavity are all vertices that are not below, on or next to the surface.
             let top = full.corners.len() - 1;
             let inside =
                 |[x, y, _]: [f32; 3]| x > 0.0 && y > 0.0 && f64::from(x) < bounds[1][0] && f64::from(y) < bounds[1][1];
@@ -173,15 +173,15 @@ fn letters_stand_out_of_the_southern_wall() {
     };
     let ([west, east], [south, north], [low, high]) = (range(0), range(1), range(2));
     assert!(west > 70.0 && east < 80.0 && (north - 0.4).abs() < 1e-6 && (south + 0.6).abs() < 1e-6, "{west} {east}");
-    // A capital is about .72 em high; its middle is that of the base.
+    // A capital is about 0.72 em high; its middle is at the middle of the base.
     assert!((high - low - 0.72 * 8.0).abs() < 0.3 && (high + low - 10.0).abs() < 0.6, "{low} {high}");
-    // The stem of an L is in its west, and its arm is at the bottom.
+    // The stem of an L is in the west, and its arm is at the bottom.
     let stem = letter.iter().filter(|at| at[2] > 6.0).all(|at| at[0] < 0.5 * (west + east));
     let arm = letter.iter().filter(|at| at[0] > 0.5 * (west + east)).all(|at| at[2] < 5.0);
     assert!(stem && arm);
     let area = volume - before;
     assert!((5.0..20.0).contains(&area), "{area}");
-    // Letters with holes, several, and one of several parts.
+    // Letters with holes, several letters, and a letter of several parts.
     for text in ["BØ8%&", "Alpine 2026", "i"] {
         closed(&{
             let mut solid = plain.clone();
@@ -211,7 +211,7 @@ fn each_part_of_land_above_a_cut_is_hollow() {
     let ((all, bounds), (left, hollow_bounds)) = (closed(&full), closed(&hollow));
     assert_eq!(bounds, hollow_bounds);
     assert!(left < 0.75 * all, "{left} {all}");
-    // The upper half of the vertices is the land; the cavity is what else is above the ground.
+    // The upper half of the vertices is the land; other vertices above the ground belong to the cavity.
     let top = &full.corners[..full.corners.len() / 2];
     assert_eq!(top, &hollow.corners[..top.len()]);
     let outline: Vec<[f32; 3]> = top.iter().copied().filter(|corner| corner[2] == 2.5).collect();
@@ -227,7 +227,7 @@ fn each_part_of_land_above_a_cut_is_hollow() {
         };
         assert!(least(top, 1.0) > 1.5 - 1e-4 && least(&outline, 0.0) > 1.5 - 1e-4, "{corner:?}");
     }
-    // Both hills have one.
+    // Both hills have a cavity.
     assert!(ceiling.iter().any(|corner| corner[0] < 55.0) && ceiling.iter().any(|corner| corner[0] > 65.0));
     // Land with capes and holes that touches the sides, at several levels.
     let grid = land(120, 100);
@@ -244,7 +244,7 @@ fn each_part_of_land_above_a_cut_is_hollow() {
         }
     }
     assert!(cavities > 1, "{cavities}");
-    // Refused: what has no room, and what has no vertex at every sample.
+    // Solids without room, and meshes without a vertex at every sample, are refused.
     let refused = |shape: &Shape, grid: &Grid, print: Print| {
         Solid::new(&crate::meshes::surface(grid, shape), &print).unwrap_err().to_string()
     };

@@ -1,4 +1,4 @@
-//! Recipes that compute: parameters, formulas, expressions.
+//! Recipes with parameters, formulas and expressions.
 
 use orogen::ids::Id;
 use orogen::plan::program::Instruction;
@@ -140,7 +140,7 @@ fn what_is_written_back_keeps_parameters_and_formulas() {
     assert!(!written.contains("bent = \"bent\""), "what names mean by themselves is not written:\n{written}");
     let again = Recipe::parse(&written, "again").unwrap_or_else(|error| panic!("{error}\n{written}"));
     assert_eq!(again, recipe);
-    // A recipe written back keeps its program: other values give the same result as with the first text.
+    // A recipe that is written back keeps its program: other values give the same result as with the first text.
     let values = set(&[("relief", 700.0), ("seed", 2.0)]);
     let [one, other] = [HILLS, &written].map(|text| Recipe::parse_with(text, "one", &values).unwrap());
     assert_eq!(one, other);
@@ -328,7 +328,7 @@ fn layers_masks_and_names_in_expressions() {
     assert_eq!(Recipe::parse(&recipe.to_toml(), "again").unwrap(), recipe);
     let world = World::open(recipe).unwrap();
     assert!(world.window("height", &Window::new(8, 8, 10.0)).is_ok());
-    // In code.
+    // The same in code.
     use orogen::field::{Expr, Fbm};
     let mut recipe = Recipe::new(orogen::WorldSpec::default());
     recipe.add("base", Fbm::default()).add("n", Expr::new("base * gain").with("gain", 3.0)).output("height", "n");

@@ -7,7 +7,7 @@ use orogen::{ErrorKind, Grid, Progress, Recipe, Result, Window, World};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// Samples along a side of the worlds in the tests of every run.
+/// Number of samples along a side of the worlds in the regular tests.
 const SIDE: usize = 384;
 
 /// A node in a world large enough to take some time.
@@ -22,7 +22,7 @@ fn make(world: &World, side: usize, progress: &Progress) -> Result<Vec<Grid>> {
     world.grids(&layers, &Window::new(side, side, 10.0), progress)
 }
 
-/// Times and shares of the reports.
+/// Times and shares of the progress reports.
 type Told = Vec<(Duration, f64)>;
 
 fn recorded(world: &World, side: usize) -> (Told, Duration) {
@@ -32,7 +32,7 @@ fn recorded(world: &World, side: usize) -> (Told, Duration) {
     (std::mem::take(&mut told.lock().unwrap()), begun.elapsed())
 }
 
-/// The longest time without a report, from the beginning to the end.
+/// The longest time without a report, from start to end.
 fn silence(told: &Told, all: Duration) -> Duration {
     let times = || told.iter().map(|(at, _)| *at);
     let pairs = std::iter::once(Duration::ZERO).chain(times()).zip(times().chain([all]));
@@ -52,15 +52,15 @@ fn shares_grow_from_nothing_to_all_in_small_steps() {
         let step = largest.fold(0.0, f64::max);
         let name = node.spec().op;
         println!("{name:24} {:4} reports, steps of up to {:5.1} % of {all:.1?}", told.len(), 100.0 * step);
-        // Short work needs no reports. Times are those that the ops state: no clock is read.
+        // Short work needs no reports. Times are those that the ops state; no clock is read.
         assert!(step < 1.0 / 3.0 || all.mul_f64(step) < LONGEST_SILENCE, "{name}: {step} of {all:?}");
     }
 }
 
-/// The longest time without a report, of work that takes longer than three times that.
+/// The maximum time without a report, for work that takes longer than three times as long.
 const LONGEST_SILENCE: Duration = Duration::from_millis(100);
 
-/// The reported shares, which only grow, from more than nothing to all.
+/// The reported shares, which must increase from above 0 to 1.
 fn checked_shares(node: &Node, told: &Told) -> impl Iterator<Item = f64> + Clone {
     let name = node.spec().op;
     let shares: Vec<f64> = told.iter().map(|(_, share)| *share).collect();
@@ -76,7 +76,7 @@ fn there_are_no_long_silences() {
     for side in [SIDE, 1024] {
         for node in Node::all() {
             let name = node.spec().op;
-            // A busy machine may delay reports: the best of three runs counts.
+            // A busy machine may delay reports, so the best of three runs counts.
             let mut runs = Vec::new();
             for _ in 0..3 {
                 let (told, all) = recorded(&open(&recipe(&node, side), 2), side);
@@ -98,7 +98,7 @@ fn is_short((silence, all, _): (Duration, Duration, usize)) -> bool {
     silence < all / 3 || silence < LONGEST_SILENCE
 }
 
-/// All nodes but those whose work the engine itself divides into blocks.
+/// All nodes except those whose work is divided into blocks by the engine.
 fn divided_by_themselves() -> impl Iterator<Item = Node> {
     Node::all().into_iter().filter(|node| !matches!(node.op(), Op::Field(_)))
 }
@@ -122,12 +122,12 @@ fn whatever_is_cancelled_at_any_moment_ends_at_once() {
     }
 }
 
-/// Sides of large worlds, the longest time that work may go on in them after it was asked to stop, and the moments at
-/// which it is asked.
+/// Sides of large worlds, the maximum time that work may continue after cancellation, and the number of moments at
+/// which it is cancelled.
 const LARGE: [(usize, Duration, usize); 2] =
     [(1024, Duration::from_millis(100), 8), (4096, Duration::from_millis(300), 4)];
 
-/// Time of this process on all processors so far, where the system tells it: a busy machine does not lengthen it.
+/// CPU time of this process so far, if the system provides it; it does not depend on how busy the machine is.
 fn cpu_time() -> Option<Duration> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
     // The name, in parentheses, may contain spaces. Times are in hundredths of a second.
@@ -135,7 +135,7 @@ fn cpu_time() -> Option<Duration> {
     Some(Duration::from_millis(10 * ticks.filter_map(|ticks| ticks.parse::<u64>().ok()).sum::<u64>()))
 }
 
-/// Asks for a stop after a time; returns how long the work went on. `None` if it ended before.
+/// Cancels the work after a time; returns how long it continued. `None` if it ended before.
 fn late(node: &Node, side: usize, after: Duration) -> Option<Duration> {
     let world = open(&recipe(node, side), 2);
     let progress = Progress::none();
@@ -161,7 +161,7 @@ fn late(node: &Node, side: usize, after: Duration) -> Option<Duration> {
 #[test]
 #[ignore = "long: every filter and solver, cancelled several times at 1024 x 1024 and 4096 x 4096"]
 fn large_work_that_is_cancelled_at_random_moments_ends_soon() {
-    // A build that is optimized little takes three times as long between two checks.
+    // A build with little optimization takes three times as long between two checks.
     let slack = if cfg!(debug_assertions) { 3 } else { 1 };
     let only = std::env::var("OROGEN_OPS").unwrap_or_default();
     let chosen = |node: &Node| only.is_empty() || only.split(',').any(|name| name == node.spec().op);
@@ -172,8 +172,8 @@ fn large_work_that_is_cancelled_at_random_moments_ends_soon() {
         let mut all = Duration::ZERO;
         for (side, limit, moments) in LARGE {
             let mut told = Told::new();
-            // Sixteen times the samples take about sixteen times as long; one more run would take as long as all
-            // others.
+            // Sixteen times the samples take about sixteen times as long; an additional run would take as long as all
+            // the others.
             match all.is_zero() {
                 true => (told, all) = recorded(&open(&recipe(&node, side), 2), side),
                 false => all *= 16,
@@ -183,7 +183,7 @@ fn large_work_that_is_cancelled_at_random_moments_ends_soon() {
             let mut longest = Duration::ZERO;
             for _ in 0..moments {
                 let after = all.mul_f64(random.below(1000) as f64 / 1000.0);
-                // A busy machine may be late by itself: the best of three runs counts.
+                // A busy machine may cause delays, so the best of three runs counts.
                 let mut best = None;
                 for _ in 0..3 {
                     let Some(late) = late(&node, side, after) else { break };

@@ -1,5 +1,5 @@
-//! Laws of windows, texts and files over generated values. A failure is shrunk to a small case. The cases are the same
-//! in every run.
+//! Properties of windows, texts and files over generated values. A failure is shrunk to a small case. The cases are the
+//! same in every run.
 
 #![allow(clippy::field_reassign_with_default, reason = "options may get more fields")]
 
@@ -19,7 +19,7 @@ use proptest::test_runner::{Config, RngAlgorithm, TestCaseResult, TestRng, TestR
 use std::fmt::Debug;
 use std::io::Cursor;
 
-/// Tests so many cases, the same in every run.
+/// Runs this number of cases, the same in every run.
 fn check<S: Strategy>(cases: u32, strategy: S, test: impl Fn(S::Value) -> TestCaseResult)
 where
     S::Value: Debug,
@@ -38,18 +38,18 @@ fn window() -> impl Strategy<Value = Window> {
     (position(), position(), 1usize..40, 1usize..40).prop_map(|(x, y, w, h)| Window::new(w, h, 2.5).at(x, y))
 }
 
-/// A window and another one that may overlap it.
+/// A window, and another one that may overlap it.
 fn neighbors() -> impl Strategy<Value = (Window, Window)> {
     (window(), -50i64..50, -50i64..50, 1usize..40, 1usize..40)
         .prop_map(|(a, dx, dy, w, h)| (a, Window::new(w, h, a.cell).at(a.x + dx, a.y + dy)))
 }
 
-/// A number that tells a position.
+/// A number that identifies a position.
 fn mark(x: i64, y: i64) -> i64 {
     x.wrapping_mul(1_000_003).wrapping_add(y)
 }
 
-/// A grid whose samples tell their positions.
+/// A grid whose samples identify their positions.
 fn marked(window: Window) -> Grid<i64> {
     let at = |k: usize| mark(window.x + (k % window.width) as i64, window.y + (k / window.width) as i64);
     Grid::from_data(window, (0..window.len()).map(at).collect()).unwrap()
@@ -118,7 +118,7 @@ fn crops_of_crops_are_crops_and_pasted_tiles_are_the_whole() {
             pasted.paste(&whole.crop(&tile).unwrap());
         }
         prop_assert!(pasted == cut);
-        // What lies outside is not pasted.
+        // Samples outside are not pasted.
         let mut other = Grid::filled(b, 7);
         other.paste(&cut);
         let right = (0..b.len()).all(|k| {
@@ -198,7 +198,7 @@ fn numbers_are_readable_and_near_what_they_say() {
     });
 }
 
-/// Stops at rising heights, each with a color.
+/// Stops at ascending heights, each with a color.
 fn stops() -> impl Strategy<Value = Vec<(i32, [u8; 3])>> {
     vec((1i32..500, any::<[u8; 3]>()), 2..12).prop_map(|steps| {
         let mut height = -900;
@@ -231,7 +231,8 @@ fn palettes_have_their_colors_at_their_stops() {
                 read::parse("it", extension, text).map_err(|why| TestCaseError::fail(format!("{why}\n{text}")))?;
             let fitted = Fitted::new(&palette, -1000.0, 6000.0, 0.0);
             for (height, rgb) in &stops {
-                // The table of a palette has entries beside its stops, so colors are mixed there too. In linear light.
+                // The table of a palette has entries between its stops, so colors are interpolated there too. In linear
+                // light.
                 let shown = fitted.at(*height as f32);
                 let off = shown.iter().zip(rgb).map(|(light, byte)| (light - color::decode(*byte)).abs());
                 let off = off.fold(0.0f32, f32::max);
@@ -270,7 +271,7 @@ fn coordinate_systems_are_known_by_code_and_by_text() {
         if let Ok(named) = named {
             prop_assert_eq!(keys::epsg(&named), Some(code));
         }
-        // Its definition is understood, or refused with a reason; what is understood can be written and read again.
+        // A definition is read, or rejected with a reason; what is read can be written and read again.
         if let Ok(told) = keys::of_wkt(crs.wkt())
             && let Ok(wkt) = keys::to_wkt(&told)
         {
@@ -331,7 +332,7 @@ fn tree() -> impl Strategy<Value = Tree> {
 }
 
 impl Tree {
-    /// With parentheses only where precedence needs them, or everywhere.
+    /// The text, with parentheses everywhere if `all`, otherwise only where precedence requires them.
     fn text(&self, all: bool) -> String {
         let part = |tree: &Tree, least: u8| {
             let text = tree.text(all);
@@ -367,7 +368,7 @@ impl Tree {
         }
     }
 
-    /// A number, with its signs.
+    /// The number, including signs; `None` if the tree is not a number.
     fn literal(&self) -> Option<f64> {
         match self {
             Tree::Number(number) => Some(*number),
@@ -471,7 +472,7 @@ fn expressions_are_what_a_naive_evaluator_makes_of_them() {
     });
 }
 
-/// Any text is an expression or an error within the text.
+/// Any text is an expression, or gives an error at a position within the text.
 #[test]
 fn errors_of_expressions_are_within_their_text() {
     check(2000, "[-+*/^%(),<=> a-c0-9.éx]{0,24}", |text| {
@@ -552,7 +553,7 @@ fn files_of_floats_have_the_same_bits() {
             geotiff::write(&mut bytes, &grid, &layout, Spool::in_memory()).unwrap();
             same_bits(&grid, &heights_of(&bytes, "tif", &Sidecar::default())?)?;
         }
-        // The value for no data is a number that heights cannot have in this format.
+        // The nodata value is a number that heights cannot have in this format.
         if grid.data().iter().all(|height| *height != -9999.0) {
             bytes.clear();
             asc::write(&mut bytes, &grid).unwrap();

@@ -170,7 +170,7 @@ fn json_has_one_kind_of_number_and_texts_may_have_a_mark_of_the_byte_order() {
     for text in [json, &format!("\u{feff}{json}"), &format!("\u{feff}{toml}")] {
         assert_eq!(Recipe::parse(text, "r").unwrap(), expect, "{text}");
     }
-    // The mark is no column.
+    // The byte order mark does not count as a column.
     complains("\u{feff}{\"orogen\":1.5}", "1:11", &["must be 1, not 1.5"]);
     complains("\u{feff}orogen = 3", "1:10", &["version 3"]);
 }
@@ -303,7 +303,7 @@ fn cliffs_of_the_preset_mesa_have_no_teeth() {
         let grid = world.window("height", &Window::new(700, 700, 20.0).at(150, 150)).unwrap();
         let (teeth, steps, most) = teeth(&grid);
         assert!(steps > 5000, "{seed}: no cliffs, {steps}");
-        // Noise alone had 1.7 to 1.9 per 100 steps, and steps of 200 m.
+        // With noise alone there were 1.7 to 1.9 per 100 steps, and steps of 200 m.
         assert!((teeth as f64) < 0.012 * steps as f64, "{seed}: {teeth} of {steps}");
         assert!(most < 80.0, "{seed}: {most} m from one sample to the next");
     }

@@ -1,4 +1,4 @@
-//! Ops that a program declares and registers, beside the built-in ones.
+//! Ops that a program declares and registers in addition to the built-in ones.
 
 mod lawless;
 mod ops;
@@ -70,7 +70,7 @@ fn they_obey_the_laws() {
         Laws::of(|cell| Ripples { wavelength: 7.3 * cell, wave: Wave::Square, ..Ripples::default() }).check(),
         Laws::of(|cell| Crests { reach: 2.5 * cell, ..Crests::default() }).check(),
         Laws::of(|cell| Midpoints { cell, ..Midpoints::default() }).check(),
-        // Finer, coarser and between the levels.
+        // At finer and coarser cells, and between the levels.
         Laws::of(|cell| Midpoints { cell: 2.7 * cell, seed: 5, levels: 9, ..Midpoints::default() }).check(),
         Laws::of(|cell| Midpoints { cell: 0.31 * cell, levels: 2, ..Midpoints::default() }).check(),
         Laws::of(|_| Above::default()).check(),
@@ -87,13 +87,13 @@ fn they_stand_beside_built_in_ops_warped_masked_and_by_layers() {
     let grids = world.grids(&layers, &window, &Progress::none()).unwrap();
     let [height, side, low, above, moved] = grids.as_slice() else { panic!("five layers") };
     let around = world.window("above", &window.grown(3)).unwrap();
-    // The moved ripples by hand: as far as noise and ripples say, half a wavelength is 50 m.
+    // The moved ripples, computed by hand from noise and ripples; half a wavelength is 50 m.
     let plain = world.window("hills", &window).unwrap();
     assert!(moved.data().iter().zip(plain.data()).any(|(a, b)| (a - b).abs() > 5.0), "the warp moves");
     let (mut inside, mut outside) = (0, 0);
     for (i, j) in (0..window.height).flat_map(|j| (0..window.width).map(move |i| (i, j))) {
         let crest = (0..49).map(|k| around[(i + k % 7, j + k / 7)]).fold(f32::MIN, f32::max);
-        // The mask mixes the first input and the result.
+        // The mask blends the first input and the result.
         let expect = if side[(i, j)] == 1.0 { crest } else { above[(i, j)] };
         assert!((height[(i, j)] - expect).abs() < 1e-4, "{} {expect} at ({i}, {j})", height[(i, j)]);
         assert_eq!(side[(i, j)] == 1.0, above[(i, j)] > 0.0);
@@ -101,7 +101,7 @@ fn they_stand_beside_built_in_ops_warped_masked_and_by_layers() {
         *if side[(i, j)] == 1.0 { &mut inside } else { &mut outside } += 1;
     }
     assert!(inside > 500 && outside > 500, "{inside} {outside}");
-    // Ripples at a point by hand.
+    // Ripples at a point, computed by hand.
     let ripples = world.points("rippled", &[1003.0], &[704.0]).unwrap()[0]
         - world.points("hills", &[1003.0], &[704.0]).unwrap()[0];
     let turns = 1003.0 / 100.0 + (world.recipe().world.world_params().seed_of(0) % 1000) as f64 / 1000.0;
@@ -124,7 +124,7 @@ fn plans_explain_them_and_can_be_sent() {
     assert!(world.memory_of(&plan).unwrap() > 5 * 4 * padded, "{explained}");
     let sent: Plan = serde_json::from_str(&serde_json::to_string(&plan).unwrap()).unwrap();
     assert_eq!(world.run(&sent, &Progress::none()).unwrap()[0], world.window("height", &window()).unwrap());
-    // Another revision of one op makes another recipe.
+    // Another revision of one op gives another recipe key.
     let mut edited = registry().parse(RECIPE, "r").unwrap();
     edited.change(|node| {
         if node.spec().op == "mygame.above" {
@@ -266,7 +266,7 @@ fn bad_and_double_names_are_refused() {
     ] {
         assert!(error.contains(said), "{said} is not in: {error}");
     }
-    // In code, where no registry looks.
+    // In code, without checks by a registry.
     let open = |nodes: [Node; 2]| {
         let mut recipe = Recipe::new(WorldSpec::default());
         for (i, node) in nodes.into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! `resample`: filters that make the same land at any requested cell.
+//! `resample`: filters that give the same land at any requested cell.
 
 use crate::support::open;
 use orogen::declare::Input;
@@ -11,7 +11,7 @@ use orogen::{Budget, ErrorKind, Grid, Options, Points, Progress, Recipe, Sampler
 /// The cell of the worlds and of their filters.
 const CELL: f64 = 30.0;
 
-/// Steep noise, and its weathering at the requested cell, which is `land` at the fixed one.
+/// Steep noise, and its weathering at the requested cell; `land` is the same weathering at the fixed cell.
 fn recipe(size: Option<f64>, cell: f64) -> Recipe {
     let mut recipe =
         Recipe::new(WorldSpec::default().with_seed(5).with_size(size.map(|side| [side; 2])).with_cell(CELL));
@@ -34,7 +34,7 @@ const PLACES: [(i64, i64); 4] = [(0, 0), (-37, -1), (1_000_003, -999_937), (-40_
 fn a_filter_makes_the_same_land_at_any_cell() {
     let world = open(&recipe(None, 0.0), 2);
     for (x, y) in PLACES {
-        // At its own cell it is the filter itself.
+        // At its own cell it is identical to the filter.
         let own = Window::new(81, 73, CELL).at(8 * x, 8 * y);
         let land = world.window("height", &own).unwrap();
         assert_eq!(bits(&land), bits(&world.window("worn", &own).unwrap()));
@@ -58,7 +58,7 @@ fn a_filter_makes_the_same_land_at_any_cell() {
 #[test]
 fn a_tile_equals_the_crop_at_any_cell() {
     let world = open(&recipe(None, 0.0), 2);
-    // Finer, equal, coarser, coarser than the largest ratio, and no multiples of the cell.
+    // Finer, equal, coarser, coarser than the largest ratio, and not multiples of the cell.
     for cell in [CELL / 8.0, 11.3, CELL, 1.37 * CELL, 3.0 * CELL, 7.9 * CELL, 8.0 * CELL, 37.0 * CELL, 64.0 * CELL] {
         for (x, y) in PLACES {
             let whole = Window::new(40, 33, cell).at(x, y);
@@ -96,7 +96,7 @@ fn beyond_the_largest_ratio_the_source_is_computed_at_a_larger_cell() {
     let source = world.window("worn", &Window::new(65, 65, 4.0 * CELL)).unwrap();
     let made = world.window("height", &window).unwrap();
     assert!((0..9).all(|i| made[(i, 8 - i)].to_bits() == source[(8 * i, 64 - 8 * i)].to_bits()));
-    // So the memory of a window is bounded, whatever its cell.
+    // So the memory of a window is bounded for any cell.
     let needed = |cell: f64| world.memory_of(&world.plan(&["height"], &Window::new(200, 200, cell)).unwrap()).unwrap();
     assert_eq!(needed(8.0 * CELL), needed(f64::from(1 << 30) * CELL));
     assert!(needed(8.0 * CELL) > 64 * 4 * 200 * 200 && needed(8.0 * CELL) < 2 * 20 * 64 * 200 * 200);
@@ -132,7 +132,7 @@ fn layers_are_interpolated_as_their_source_and_constants_stay() {
     recipe.add("east", Fbm { wavelength: 900.0, seed: 3, ..Fbm::default() });
     let warp = |source: &str| Warp { source: source.into(), x: "east".into(), y: 0.3.into(), strength: 200.0 };
     recipe.add("bent", warp("land"));
-    // One behind the other, and masked.
+    // Two in sequence, and masked.
     let again = Resample { source: "land".into(), cell: 75.0, ..Resample::default() };
     recipe.add_masked("again", again, Input::from("east"));
     for name in ["form", "flat", "bent", "again"] {
@@ -198,7 +198,7 @@ fn what_cannot_be_is_refused_with_a_sentence() {
     ] {
         assert!(said(params).contains(expect), "{}", said(params));
     }
-    // A window that is too large for any memory is refused, not begun.
+    // A window that is too large for any memory is refused before the work starts.
     let options = Options { memory: Budget::of(1 << 30), threads: Some(1), ..Options::default() };
     let world = World::with_options(recipe(None, 1e-6), options).unwrap();
     let error = world.window("height", &Window::new(1 << 26, 1 << 26, 100.0)).unwrap_err();

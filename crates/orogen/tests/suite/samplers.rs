@@ -1,4 +1,4 @@
-//! A sampler returns the values of its world, independent of earlier requests and the number of threads.
+//! A sampler returns the values of its world, independent of earlier requests and of the number of threads.
 
 use crate::support::{Random, open, recipe_of, world_of};
 use orogen::field::{Fbm, Warp};
@@ -38,7 +38,7 @@ fn windows_and_points_of_every_node_are_the_worlds() {
     }
 }
 
-/// A world without bounds whose ground needs a halo and is interpolated from the grid.
+/// An unbounded world whose ground needs a halo and is interpolated from the grid.
 fn soft() -> Recipe {
     let mut recipe = Recipe::new(WorldSpec::default().with_seed(5).with_size(None).with_cell(2.0));
     recipe.add("noise", Fbm { wavelength: 70.0, ..Fbm::default() });

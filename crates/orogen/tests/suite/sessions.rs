@@ -162,8 +162,8 @@ fn grids_of_expensive_filters_are_found_again() {
     assert_eq!(none.filters_found(), 0);
 }
 
-/// Cancels at many moments: the stored solutions are valid, no memory stays reserved, and the next request has the same
-/// bits.
+/// Cancels at many moments, and checks that stored solutions are valid, no memory stays reserved, and the next request
+/// has the same bits.
 fn cancelled_at_many_moments(recipe: &Recipe, samples: usize, moments: u64) {
     let open = |session: &Session| session.open(recipe.clone()).unwrap();
     let expect = {

@@ -1,4 +1,4 @@
-//! The storage of solutions changes no bit: in memory, on disk, in a cache folder for later runs.
+//! The storage of solutions does not change any bit: in memory, on disk, in a cache folder for later runs.
 
 use crate::support::world_of;
 use orogen::field::{Fbm, Warp};
@@ -38,7 +38,7 @@ impl Folder {
     }
 }
 
-/// Warps of filters of solvers, twice: more than one page and tile of everything if the world is `large`.
+/// Warps of filters of solvers, twice; with `large`, the world takes more than one page and tile of everything.
 fn stacked(cell: f64, large: bool) -> Recipe {
     let size = if large { [1300.0 * cell, 1030.0 * cell] } else { [640.0 * cell, 512.0 * cell] };
     let spec = world_of(cell).with_size(Some(size));
@@ -88,7 +88,7 @@ fn memory_disk_and_folder_make_the_same_bits() {
         let parts: Vec<Window> = [(1, 419, 359), (64, 20, 281), (300, 111, 60)]
             .map(|(side, x, y)| Window::new(side, side, cell).at(window.x + x, window.y + y))
             .into();
-        // In memory for a later run, found by it, on disk, found on disk.
+        // In memory and stored for a later run, found by it, on disk, found on disk.
         let short = Some(10 << 20);
         for (threads, memory, cached) in
             [(1, None, true), (2, None, true), (2, short, false), (1, short, true), (2, short, true)]
@@ -124,7 +124,7 @@ fn memory_disk_and_folder_make_the_same_bits() {
             let point = world.points("height", &[window.east(i)], &[window.south(j)]).unwrap()[0];
             assert_eq!(point.to_bits(), whole[0][(i, j)].to_bits(), "{name}");
             if cell != 10.24 {
-                // The others differ in their positions only: one run on disk is sufficient.
+                // The other positions differ only in their coordinates, so one run on disk is sufficient.
                 let world =
                     open(&recipe, Options { threads: Some(2), memory: Budget::of(short), ..Options::default() });
                 same("disk", &whole, &layers(&world, &parts[2]));
@@ -153,7 +153,7 @@ fn tiles_of_any_size_solve_the_same() {
 
 /// Returns the work to make a window, the number of progress reports, and the grid.
 fn made(recipe: &Recipe, cache: FolderStore, window: &Window) -> (f64, u64, Grid) {
-    // Several threads may report the same work in other portions.
+    // Several threads may report the same work in different portions.
     let world = open(recipe, Options { threads: Some(1), store: Some(Arc::new(cache)), ..Options::default() });
     let plan = world.plan(&["height"], window).unwrap();
     let work = world.work(&plan).unwrap();
@@ -189,7 +189,7 @@ fn a_later_run_finds_what_was_solved_and_makes_again_what_is_damaged() {
         assert!(third > fewer && again == expect, "{third}");
         assert!(fs::read(&damaged).unwrap() != bytes, "it was made again");
     }
-    // Another world has other solutions.
+    // Another world has different solutions.
     let mut other = recipe.clone();
     other.world.seed += 1;
     assert!(made(&other, folder.cache(), &window).0 > less);
@@ -228,7 +228,7 @@ fn solutions_of_other_layers_leave_memory_when_it_is_short() {
     let recipe = stacked(10.0, false);
     let window = Window::new(30, 30, 10.0);
     let ample = open(&recipe, Options::default());
-    // Just enough for either layer alone.
+    // Just enough for one layer at a time.
     let needed = |layer| ample.memory_of(&ample.plan(&[layer], &window).unwrap()).unwrap();
     let limit = needed("height").max(needed("steep"));
     let world = open(&recipe, Options { memory: Budget::of(limit), ..Options::default() });
@@ -282,7 +282,7 @@ fn several_worlds_share_a_folder_at_once() {
     });
 }
 
-/// What the [`Objects`] do wrong.
+/// The fault of [`Objects`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Flaw {
     None,
@@ -290,22 +290,22 @@ enum Flaw {
     Get,
     /// Nothing can be stored.
     Put,
-    /// Another entry's bytes.
+    /// Reads return the bytes of another entry.
     Swapped,
-    /// The given read from now on, and all after it, fail.
+    /// The read with this number and all later reads fail.
     Read(i64),
-    /// The given read from now on gets a flipped bit, in the middle.
+    /// From the read with this number on, a bit in the middle is flipped.
     Flipped(i64),
     /// Bytes are missing at the end.
     Short,
 }
 
-/// A program's own store: bytes in a map, with faults.
+/// A custom store of a program: bytes in a map, with faults.
 #[derive(Debug)]
 struct Objects {
     held: Mutex<BTreeMap<EntryKey, Arc<Vec<u8>>>>,
     fault: Mutex<Flaw>,
-    /// Reads until the fault.
+    /// Number of reads before the fault.
     left: Arc<AtomicI64>,
     removed: AtomicU64,
 }
@@ -389,8 +389,8 @@ impl ReadAt for Object {
     }
 }
 
-/// A session with a store, on one thread, so that reads keep their order: the layers, how many solutions it made, and
-/// the store's failure.
+/// Makes the layers in a session with a store, on one thread, so that reads keep their order. Returns the layers, the
+/// number of solutions that were made, and the store's failure.
 fn through(
     recipe: &Recipe,
     store: Arc<dyn SolutionStore>,
@@ -446,7 +446,7 @@ fn a_store_of_a_program_may_fail_but_never_changes_a_bit() {
 
 #[test]
 fn entries_that_stay_in_a_store_are_the_same_bits_or_an_error() {
-    // More pages than are kept in memory, so that they are read again after they were verified.
+    // More pages than are kept in memory, so that they are read again after verification.
     let recipe = stacked(10.0, true);
     let window = Window::new(250, 240, 10.0).at(20, 20);
     let expect = layers(&open(&recipe, Options::default()), &window);

@@ -17,7 +17,7 @@ fn figure(measures: &Measures, key: &str) -> f64 {
 
 #[test]
 fn a_plane_is_what_it_is() {
-    // It falls to the south-west at 45 degrees.
+    // The land falls to the south-west at 45 degrees.
     let measures = Measures::of(&grid(128, 10.0, |x, y| (x - y) / 2f64.sqrt()), None).unwrap();
     assert!((figure(&measures, "slope_mean") - 45.0).abs() < 1e-3);
     assert!((figure(&measures, "hypsometric_integral") - 0.5).abs() < 1e-3);
@@ -39,7 +39,7 @@ fn the_sea_is_no_land() {
     // A disc of 500 m.
     let share = std::f64::consts::PI * 500.0 * 500.0 / (1600.0 * 1600.0);
     assert!((land.land_share - share).abs() < 0.01, "{}", land.land_share);
-    // The mean of a cone is a third of its height.
+    // The mean height of a cone is a third of its height.
     assert!((figure(&land, "hypsometric_integral") - 1.0 / 3.0).abs() < 0.02);
     assert!(Measures::of(&cone, Some(600.0)).is_none());
     assert!(Measures::of(&grid(63, 10.0, |x, _| x), None).is_none());
@@ -61,7 +61,7 @@ fn real_ranges_are_in_order_and_every_figure_can_be_had() {
     }
     let text = table(&measures);
     assert_eq!(text.lines().count(), FIGURES.len() + 3, "{text}");
-    // The page is drawn, with the same width for any terrain.
+    // The page is drawn with the same width for any terrain.
     for heights in
         [heights, grid(64, 1e-3, |x, y| x * y), grid(700, 5000.0, |x, y| libm::sin(x / 9000.0) * 500.0 + y / 1e4)]
     {

@@ -26,7 +26,7 @@ fn tiles_are_the_crops_of_the_window_in_order() {
         for (side, overlap) in [(1, 0), (7, 1), (32, 0), (32, 1), (45, 3), (500, 1)] {
             let tiling = Tiling { overlap, ..Tiling::of(side) };
             let none = Progress::none();
-            // From all at once to tile by tile.
+            // From all tiles at once to tile by tile.
             for memory in [u64::MAX, 3 << 20, 1_200_000] {
                 let tiling = Tiling { memory: Some(memory), ..tiling };
                 let world = limited(&recipe, u64::MAX);

@@ -23,7 +23,7 @@ impl Folder {
     }
 }
 
-/// A part: hills on a given base, with two outputs.
+/// A part of a recipe: hills on a given base, with two outputs.
 const HILLS: &str = r#"
 orogen = 1
 [parameters]
@@ -76,7 +76,7 @@ hills = "hills"
 rough = "hills.rough"
 "#;
 
-/// The same with all nodes in one recipe.
+/// The same world with all nodes in one recipe.
 const BY_HAND: &str = r#"
 orogen = 1
 [world]
@@ -135,10 +135,10 @@ fn a_used_recipe_makes_what_its_nodes_make() {
     for layer in ["hills", "rough"] {
         assert_eq!(bits(&world, layer), bits(&by_hand, layer), "{layer}");
     }
-    // Another seed gives another noise.
+    // Another seed gives different noise.
     let other = folder.read("parts/hills.toml").unwrap();
     assert_ne!(recipe.nodes()[8].node, other.nodes()[2].node);
-    // A recipe written back needs no other file, and its parameters still apply to the parts.
+    // A recipe that is written back needs no other file, and its parameters still apply to the parts.
     let written = recipe.to_toml();
     assert!(written.contains("relief = \"= (scale * 50)\"") && written.contains("[nodes.\"hills/land\"]"), "{written}");
     let again = Recipe::parse(&written, "again").unwrap_or_else(|error| panic!("{error}\n{written}"));
@@ -274,7 +274,7 @@ fn groups_are_names_only() {
     let [one, other] = [plain, grouped].map(|recipe| World::open(recipe).unwrap());
     assert_eq!(one.key("height").unwrap(), other.key("height").unwrap());
     assert_eq!(bits(&one, "height"), bits(&other, "height"));
-    // Errors are told where they are, by the whole name.
+    // Errors have a position and the full name of the node.
     let wrong = written.replace("fbm", "fbn");
     let error = Recipe::parse(&wrong, "test").unwrap_err();
     assert!(error.diagnostics()[0].place.is_some() && error.to_string().contains("fbn"), "{error}");

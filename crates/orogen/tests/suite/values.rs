@@ -12,7 +12,7 @@ fn world() -> WorldSpec {
     WorldSpec::default().with_seed(5).with_size(Some([SIZE, SIZE])).with_cell(10.0)
 }
 
-/// A world of the nodes; the last one is the output.
+/// A world of these nodes; the last one is the output.
 fn of(nodes: Vec<(&str, Node)>) -> World {
     let mut recipe = Recipe::new(world());
     let last = nodes.last().map(|(name, _)| name.to_string()).unwrap();
@@ -114,7 +114,7 @@ fn warp_reads_the_source_where_it_is_sent() {
     let sent = |x: f64, y: f64| Warp { source: "r".into(), x: x.into(), y: y.into(), strength: 40.0 };
     near(&of(vec![("r", ramp.clone()), ("w", sent(0.5, 0.9).into())]), &[(100.0, 0.0, 120.0)]);
     near(&of(vec![("r", ramp.clone()), ("w", sent(-1.0, 0.0).into())]), &[(100.0, 0.0, 60.0)]);
-    // The displacement never exceeds its strength.
+    // The displacement is never larger than its strength.
     near(&of(vec![("r", ramp), ("w", sent(-7.0, 0.0).into())]), &[(100.0, 0.0, 60.0)]);
 }
 

@@ -1,4 +1,4 @@
-//! Layers in space: their samples, what may read the altitude, and their memory.
+//! Layers in space: their samples, which nodes may read the altitude, and their memory.
 
 use crate::support::open;
 use orogen::declare::VERTICAL;
@@ -8,7 +8,7 @@ use orogen::value::Value;
 use orogen::{Budget, ErrorKind, Options, Recipe, Sampler, Window, World};
 use orogen_noise::{Basis, Depth, Fractal, Kind, Perlin, Points};
 
-/// Ground with caves: a filter and a warp in the plane, noise in space.
+/// Ground with caves: a filter and a warp in the plane, and noise in space.
 const CAVES: &str = r#"
 orogen = 1
 [world]
@@ -145,7 +145,7 @@ fn a_part_of_a_volume_has_the_bits_of_the_whole() {
     }
 }
 
-/// The density of [`fields`] cut at an altitude, and what others make of the slice.
+/// The density of [`fields`] cut at an altitude, and nodes that read the slice.
 const CUT: &str = r#"
 [nodes.slice]
 op = "slice"
@@ -200,7 +200,7 @@ fn a_slice_is_its_source_at_one_altitude_wherever_it_is_read() {
         assert_eq!(cut.window("beside", &window).unwrap().data(), at(&plain, "density", &beside, altitude));
         let over = at(&cut, "over", &window, 17.0);
         assert!(over.iter().zip(&source).all(|(over, source)| *over == source + 17.0));
-        // The warp depends on the altitude; what it reads does not.
+        // The warp depends on the altitude; the layer that it reads does not.
         let [low, high] = [-30.0, 240.0].map(|other| at(&cut, "bent", &window, other));
         assert_ne!(low, high);
         let inside = |made: &[f32]| made.iter().all(|made| source.iter().any(|s| (s - made).abs() < 60.0));

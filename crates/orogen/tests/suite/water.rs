@@ -23,7 +23,7 @@ struct Land {
 }
 
 impl Land {
-    /// The world of a recipe at its own cell size, with this seed.
+    /// The world of a recipe at its own cell, with this seed.
     fn of(recipe: &str, seed: u64) -> Land {
         let mut recipe = Recipe::parse(recipe, "the recipe").unwrap();
         recipe.world.seed = seed;
@@ -80,8 +80,8 @@ impl Land {
         }
     }
 
-    /// Checks that each lake is level, has at least four cells, and has an outlet at its edge. Returns the lakes' share
-    /// of the land.
+    /// Checks that each lake is level, has at least four cells, and has an outlet at its edge. Returns the share of the
+    /// land that lakes cover.
     fn lakes_are_lakes(&self) -> f64 {
         let count = self.cells().map(|cell| self.lake(cell)).max().unwrap_or(0) as usize;
         let mut cells = vec![0usize; count + 1];
@@ -96,12 +96,12 @@ impl Land {
             level[lake] = surface;
             assert!(surface >= self.height[(i, j)], "water is above its bed");
             for (shore, _) in self.neighbors((i, j)).filter(|(cell, _)| self.lake(*cell) as usize != lake) {
-                // The outlet must not be at a shore from which water returns.
+                // The outlet must not be at a shore from which water flows back.
                 let low = self.surface[(shore.0, shore.1)] <= surface;
                 let on = || self.receiver(&self.surface, shore).is_some_and(|to| self.lake(to) as usize != lake);
                 spills[lake] |= low && (self.is_outside(shore) || on());
             }
-            // A lake at the border is partly outside, perhaps with its outlet.
+            // A lake at the border is partly outside, and its outlet may be outside too.
             cut[lake] |= self.is_outside((i, j));
         }
         for lake in (1..=count).filter(|lake| cells[*lake] > 0 && !cut[*lake]) {

@@ -158,8 +158,7 @@ fn a_watershed_is_all_land_whose_flow_directions_lead_to_its_outlet() {
         let outlet = [real("outlet_x") / 50.0, -real("outlet_y") / 50.0].map(|at| at as i64);
         assert_eq!(f64::from(flow[(outlet[0] as usize, outlet[1] as usize)]), real("drainage_area"));
         assert!(real("drainage_area") >= 200_000.0 && real("moved") <= 3000.0);
-        // Whether the path of flow directions from a sample passes the outlet; it is not known of one that leaves the
-        // window.
+        // Whether the path of flow directions from a sample passes the outlet; unknown if the path leaves the window.
         let leads = |start: [i64; 2]| {
             let mut at = start;
             while at != outlet {
@@ -199,7 +198,7 @@ fn a_watershed_is_all_land_whose_flow_directions_lead_to_its_outlet() {
 fn flooded(heights: &Grid, sea_level: f32) -> Vec<f32> {
     let (width, height) = (heights.width() as i64, heights.height() as i64);
     let mut level = vec![f32::NAN; heights.data().len()];
-    // Heights that are not negative have the order of their bits.
+    // Non-negative heights sort like their bits.
     let key = |h: f32| Reverse((h + 1e4).to_bits());
     let mut queue = BinaryHeap::new();
     for (k, h) in heights.data().iter().enumerate() {

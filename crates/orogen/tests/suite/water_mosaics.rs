@@ -1,5 +1,5 @@
-//! Water on mosaics of tiles that are made apart: depressions, beds of rivers, agreement of heights and drainage areas,
-//! borders.
+//! Water on mosaics of tiles that are made separately: depressions, beds of rivers, agreement of heights and drainage
+//! areas, borders.
 
 use crate::support::water::borders::{self, Places};
 use crate::support::water::faults;
@@ -12,7 +12,7 @@ use orogen::grid::hydrology::steepest::Descent;
 use orogen::grid::hydrology::{Outlets, accumulate, route_carving};
 use orogen::{Grid, Options, Recipe, Session, Window, World, presets};
 
-/// Rough land with lakes, `cells` cells along each side; `receiver` as an output if `directions`.
+/// Rough land with lakes, with `cells` cells along each side; with `directions`, it has an output `receiver`.
 fn small(cells: usize, directions: bool) -> Recipe {
     let length = cells as f64 * 60.0;
     let receiver = if directions { "receiver = \"rivers.receiver\"" } else { "" };
@@ -66,7 +66,7 @@ fn missed(figures: &[Figure]) -> Vec<String> {
     figures.iter().filter(|figure| !figure.holds()).map(|figure| figure.name.clone()).collect()
 }
 
-/// Tiles of a mosaic that is already made: faster, for tests of the measurements themselves.
+/// Tiles cut from a mosaic that is already made: faster, for tests of the measurements themselves.
 fn crops(mosaic: &Water) -> impl Fn(&Window) -> orogen::Result<Water> + Sync {
     |window| {
         let mut tile = Water::like(mosaic, *window);
@@ -95,7 +95,7 @@ fn rivers_continue_in_adjacent_windows() {
     }
 }
 
-/// The receivers found from areas alone are those of the world.
+/// Checks that the receivers found from areas alone are those of the world.
 fn compare_receivers(recipe: &Recipe) {
     let water = tiles_of(recipe, None)(&full_window(recipe)).unwrap();
     let window = water.window();
@@ -118,7 +118,8 @@ fn areas_determine_receivers() {
     compare_receivers(&small(320, true));
 }
 
-/// A cell of a river larger than `area`, not near lakes, the sea and the edge of [`MOSAIC`], and the cell it drains to.
+/// A cell of a river larger than `area` that is not near lakes, the sea or the edge of [`MOSAIC`], and the cell it
+/// drains to.
 fn river_cell(water: &Water, area: f64) -> [[i64; 2]; 2] {
     let window = *water.window();
     let network = Network::new(water);
@@ -174,7 +175,7 @@ fn faults_are_found() {
     );
     expect(&cut, &["areas unbalanced at borders"]);
 
-    // Areas that the heights do not have. Rivers stay as they are.
+    // Areas that do not match the heights. Rivers do not change.
     let areas = missed_with(&tiles, |_| true, |water, cell| water.flow.data_mut()[cell] *= 1.5);
     expect(&areas, &["D8 agrees"]);
     assert!(areas.iter().all(|name| name.starts_with("D8 agrees")), "{areas:?}");
@@ -187,7 +188,7 @@ fn faults_are_found() {
     expect(&full, &["lakes, surface above the shore"]);
 }
 
-/// A cell amid a lake.
+/// A cell in the middle of a lake.
 fn lake_cell(water: &Water) -> [i64; 2] {
     let window = *water.window();
     let is_lake = |cell: usize| water.lakes.data()[cell] > 0.0;
@@ -196,8 +197,8 @@ fn lake_cell(water: &Water) -> [i64; 2] {
     [window.x + (cell % window.width) as i64, window.y + (cell / window.width) as i64]
 }
 
-/// A single river is cut in a single tile, on either side of the border. With known receivers every cut is found;
-/// without, a tributary or a parallel river beside the border may explain the areas.
+/// A single river is cut in a single tile, on either side of the border. With known receivers every cut is detected;
+/// without them, a tributary or a parallel river along the border may explain the areas.
 #[test]
 fn one_cut_river_is_found() {
     for directions in [false, true] {
@@ -222,7 +223,7 @@ fn one_cut_river_is_found() {
     }
 }
 
-/// The area of every tile alone, as if no water came from outside: rivers are cut at nearly every border.
+/// The area within each tile only, as if no water came from outside: rivers are cut at nearly every border.
 #[test]
 fn drainage_of_single_tiles_is_cut() {
     let water = MOSAIC.make(&tiles_of(&small(320, false), None)).unwrap();
@@ -241,8 +242,8 @@ fn drainage_of_single_tiles_is_cut() {
     assert!(found.cut + found.unbalanced > 10, "{found:?}");
 }
 
-/// Pairs of windows of which one comes from one session and the other from another: no tile of a level and no solution
-/// is shared across a border.
+/// Pairs of windows in which each window comes from a separate session, so no tile of a level and no solution is shared
+/// across a border.
 fn pairs(recipe: &Recipe, places: &Places) -> borders::Pairs {
     let sessions = [(); 2].map(|()| Session::new(Options { threads: Some(1), ..Options::default() }).unwrap());
     let tiles = sessions.each_ref().map(|session| tiles_in(recipe, session));
@@ -260,8 +261,9 @@ fn threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// No river of `endless` is cut between windows that are made apart, in a square of `width` cells around the origin.
-/// Areas of levels are carried down with a small error, so some are not balanced, inside of windows, too.
+/// Checks that no river of `endless` is cut between windows that are made separately, in a square of `width` cells
+/// around the origin. Areas of levels are carried down with a small error, so some are not balanced, also inside
+/// windows.
 fn no_river_is_cut(width: usize, count: usize, near: usize) -> borders::Borders {
     let recipe = presets::find("endless").unwrap().recipe().unwrap();
     let half = width as i64 / 2;
@@ -285,7 +287,7 @@ fn rivers_of_levels_continue_in_ten_thousand_adjacent_windows() {
     assert!(found.crossings > 3000, "{found:?}");
 }
 
-/// Measures a mosaic of tiles from worlds of their own, and pairs of windows; prints the tables.
+/// Measures a mosaic of tiles from separate worlds, and pairs of windows; prints the tables.
 fn check(recipe: &Recipe, mosaic: &Mosaic, count: usize) {
     println!("{}: seed {}, {mosaic:?}", recipe.about, recipe.world.seed);
     let mut figures = measure(&tiles_of(recipe, None), mosaic).unwrap();

@@ -1,4 +1,4 @@
-//! Water of worlds with their own network: the rivers of a window are those of every other window.
+//! Water of worlds with their own network: the rivers of a window are the same in every other window.
 
 use std::collections::HashMap;
 
@@ -41,7 +41,7 @@ fn quarters(window: &Window) -> Vec<Window> {
     vec![part(0, 0), part(1, 0), part(0, 1), part(1, 1)]
 }
 
-/// Windows of `endless`: mountains at the finest cell, a coast with rivers at coarse ones, a cell between two levels
+/// Windows of `endless`: mountains at the finest cell, a coast with rivers at coarse cells, a cell between two levels
 /// and one below the finest, and two shores of a large lake.
 fn windows() -> Vec<Window> {
     vec![
@@ -80,7 +80,7 @@ fn every_river_that_crosses_a_border_is_the_same_on_both_sides() {
         let (x, y) = (half(window.x, window.width), half(window.y, window.height));
         // A side between two samples of another lattice is rounded to a millionth of its cell.
         let is_at = |a: f64, b: f64| (a - b).abs() < 2e-6 * window.cell;
-        // The ends at them: whether reaches begin or end there.
+        // For each point on these lines, whether reaches begin or end there.
         let mut ends: HashMap<[u64; 3], Vec<bool>> = HashMap::new();
         for part in &parts {
             for river in &part.rivers {
@@ -98,7 +98,8 @@ fn every_river_that_crosses_a_border_is_the_same_on_both_sides() {
             assert!(kinds.len() == 2 && kinds[0] != kinds[1], "{window:?}: {at:?} {kinds:?}");
         }
         crossings += ends.len();
-        // The parts are as long as the whole, and each of their points is one of the whole or at the sides.
+        // The parts together are as long as the whole, and each of their points is a point of the whole or lies at a
+        // side.
         let all =
             |source: &FeatureSource| -> f64 { source.rivers.iter().map(|river| length(&line_of(source, river))).sum() };
         let sum: f64 = parts.iter().map(all).sum();
@@ -141,11 +142,11 @@ fn beds_never_rise_and_reaches_join() {
                         let next = &ground.rivers[next as usize];
                         assert_eq!(next.points[0], last, "{}", told());
                         assert!(river.order == 0 || next.order == 0 || next.order >= river.order, "{}", told());
-                        // Once a part of a catchment is unknown, it is downstream, too.
+                        // Once part of a catchment is unknown, everything downstream is unknown too.
                         assert!(river.order > 0 || next.order == 0, "{}", told());
                     }
                     Mouth::Sea => {
-                        // On coarser levels there are inlets that the samples do not show.
+                        // Coarser levels have inlets that the samples do not show.
                         let is_shore = ground.shores.coasts().any(|line| line.contains(&[last[0], last[1]]));
                         assert!(is_shore || !is_finest, "{}", told());
                         (shores, mouths) = (shores + usize::from(is_shore), mouths + 1);
@@ -191,15 +192,15 @@ fn drained_areas_are_those_of_the_layer_and_include_the_land_outside() {
             let expect = f64::from(flow[(i, j)]);
             let area = river.drained * window.cell * window.cell;
             assert!((area / expect - 1.0).abs() < 1e-12, "{area} {expect}");
-            // A river runs on through a small lake with an outlet.
+            // A river continues through a small lake with an outlet.
             assert!((0.0..8.0).contains(&(receiver[(i, j)] % 16.0)));
             found += 1;
         }
         assert!(found * 20 > ground.rivers.len() * 19, "{found} of {}", ground.rivers.len());
         if window.cell == 60.0 {
-            // At the finest level these are the layers of the samples.
+            // At the finest level these layers are those of the samples.
             let outputs = ["flow", "receiver"].map(|layer| world.window(layer, &window).unwrap());
-            // In lakes with an outlet 16 is added to the directions of nodes.
+            // In lakes with an outlet, 16 is added to the directions of nodes.
             let mut directions = receiver;
             for code in directions.data_mut() {
                 *code -= if *code >= 16.0 { 16.0 } else { 0.0 };
@@ -207,7 +208,7 @@ fn drained_areas_are_those_of_the_layer_and_include_the_land_outside() {
             assert!(outputs == [flow, directions]);
         }
     }
-    // A small window at a large river: nearly all of the area lies outside of it.
+    // A small window at a large river: nearly all of its drainage area is outside.
     let map = source(&world, &Window::new(200, 160, 7680.0).at(-120, -100));
     let largest = map.rivers.iter().max_by(|a, b| a.drained.total_cmp(&b.drained)).unwrap();
     let [x, y, _] = largest.points[largest.points.len() / 2];
@@ -216,7 +217,7 @@ fn drained_areas_are_those_of_the_layer_and_include_the_land_outside() {
     let ground = source(&world, &near);
     let most = ground.rivers.iter().map(|river| river.drained * 14_400.0).fold(0.0, f64::max);
     assert!(most > 100.0 * near.len() as f64 * 14_400.0, "{most}");
-    // So its order is unknown.
+    // Therefore its order is unknown.
     let rivers = layer(&world, &ground, "rivers");
     let column = |name: &str| rivers.fields.iter().position(|field| field.name == name).unwrap();
     let orders = || rivers.features.iter().map(|river| &river.values[column("strahler")]);
@@ -227,7 +228,7 @@ fn drained_areas_are_those_of_the_layer_and_include_the_land_outside() {
     }
 }
 
-/// Twice the area of rings, holes negative.
+/// Twice the area of rings; holes count as negative.
 fn twice_area(geometry: &Geometry) -> f64 {
     let Geometry::MultiPolygon(parts) = geometry else { return 0.0 };
     let ring = |ring: &Vec<[f64; 2]>| -> f64 {
@@ -281,7 +282,7 @@ fn recipes_without_both_outputs_find_rivers_in_their_heights() {
     let ground = source(&without, &window);
     assert!(ground.water.network.is_none() && ground.water.heights.window() == &window);
     assert!(source(&world("endless"), &window).water.network.is_some());
-    // Layers of drainage need a solver there, which needs bounds.
+    // Layers of drainage need a solver there, which requires a bounded world.
     let mut plain = without.recipe().clone();
     let why = prepare(&mut plain, "drainage-area", &Options::default()).unwrap_err();
     assert!(why.to_string().contains("or the outputs `flow` and `receiver`"), "{why}");
@@ -315,7 +316,7 @@ fn layers_of_drainage_follow_the_network() {
             assert!(grids[0].data()[k] >= (window.cell * window.cell * 0.99) as f32);
         }
         assert!(wet * 2 < window.len(), "{preset} {window:?} {wet}");
-        // Following the directions ends.
+        // Every path along the directions ends.
         for start in 0..window.len() {
             let (mut i, mut j, mut steps) = ((start % window.width) as isize, (start / window.width) as isize, 0);
             while (0..window.width as isize).contains(&i) && (0..window.height as isize).contains(&j) {
@@ -351,13 +352,13 @@ fn it_can_be_cancelled_and_needs_its_memory() {
     assert!(FeatureSource::of(&endless, &far, &options, 0, &Progress::none()).is_err());
 }
 
-/// Samples around the end of a river where its sea has to be, as a bay may be narrower than a sample; how many of them
-/// are sea, and samples of a lake.
+/// Distance in samples around the end of a river within which there must be sea, because a bay may be narrower than a
+/// sample; minimum number of sea samples there; minimum number of samples of a lake.
 const AROUND: usize = 6;
 const SEA_SAMPLES: usize = 4;
 const LAKE_SAMPLES: usize = 2;
 
-/// Number of samples of the sea around the end of a river.
+/// The number of samples around the end of a river that are sea.
 fn sea_around(source: &FeatureSource, sea_level: f32, end: [f64; 3]) -> usize {
     let heights = &source.water.heights;
     let near = |at: f64, count: usize| (at as usize).saturating_sub(AROUND)..(at as usize + AROUND + 1).min(count);
@@ -367,7 +368,7 @@ fn sea_around(source: &FeatureSource, sea_level: f32, end: [f64; 3]) -> usize {
 
 #[test]
 fn rivers_end_in_a_sea_or_a_lake_that_is_there() {
-    // Cells at which the land has coasts, and the seeds.
+    // Cells at which the land has coasts, with seeds.
     let cases = [
         ("biomes", 6400.0, 10..=21),
         ("continent", 15360.0, 1..=2),

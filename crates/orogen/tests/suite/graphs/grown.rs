@@ -1,4 +1,4 @@
-//! Recipes drawn at random from the declarations of all ops: a new op takes part by existing.
+//! Recipes drawn at random from the declarations of all ops. New ops are included automatically.
 
 use super::values::value;
 use crate::support::{DEM, DRAWINGS, PICTURE, Random};
@@ -14,31 +14,30 @@ pub struct Grown {
     pub window: Window,
 }
 
-/// What became of the nodes that were drawn.
+/// Statistics of the nodes that were drawn.
 #[derive(Debug, Default)]
 pub struct Tally {
     pub graphs: usize,
     pub nodes: usize,
-    /// Not valid together with others, although each parameter is in its range; the message says why.
+    /// Parameters that are not valid together, although each is in its range; the message says why.
     pub refused: usize,
-    /// The plan states that it takes more time or memory than a test should.
+    /// The plan states that a node takes more time or memory than a test should.
     pub expensive: usize,
-    /// Requests under a memory limit, and how many of them were refused.
+    /// Number of requests under a memory limit, and number of them that were refused.
     pub limited: [usize; 2],
 }
 
-/// Memory of a plan in bytes, and work in nanoseconds, from which on a graph is too expensive to be made again and
-/// again.
+/// Memory of a plan in bytes, and work in nanoseconds, above which a graph is too expensive for repeated runs.
 const MEMORY: u64 = 256 << 20;
 const WORK: f64 = 2e8;
-/// What the last node may take with those below it: the levels of `continents` are made in tiles.
+/// Work limit for the last node and its inputs; it is larger because the levels of `continents` are made in tiles.
 const WORK_OF_LAST: f64 = 6e8;
 
-/// Nodes of a graph, and attempts to draw each of them.
+/// Number of nodes of a graph, and number of attempts to draw each.
 const NODES: u64 = 14;
 const ATTEMPTS: usize = 12;
 
-/// The graph of a seed. Each op in turn is the last one. `seen` gets every recipe before it is opened.
+/// The graph for a seed. Each op in turn is the last node. `seen` is called with every recipe before it is opened.
 pub fn grown(seed: u64, tally: &mut Tally, seen: &mut dyn FnMut(&Recipe)) -> Grown {
     let mut random = Random(seed);
     let ops = Node::all();
@@ -67,12 +66,12 @@ pub fn grown(seed: u64, tally: &mut Tally, seen: &mut dyn FnMut(&Recipe)) -> Gro
     Grown { recipe: with_outputs(&recipe, &mut random), window }
 }
 
-/// A number of this order of magnitude or `decades` more.
+/// A number between `least` and `decades` orders of magnitude more.
 fn magnitude(least: f64, decades: f64, random: &mut Random) -> f64 {
     least * libm::pow(10.0, decades * random.share())
 }
 
-/// A world of at most 160 x 160 cells, with bounds if `op` needs them.
+/// A world of at most 160 x 160 cells, bounded if `op` requires it.
 fn world(op: &Node, random: &mut Random) -> WorldSpec {
     let cell = match random.below(4) {
         0 => magnitude(1e-4, 11.0, random),
@@ -114,7 +113,7 @@ fn with_node(recipe: &Recipe, op: &Node, random: &mut Random) -> Recipe {
         _ => DEM,
     };
     for (i, spec) in op.spec().params.iter().enumerate() {
-        // Some keep their defaults, which are what most recipes have.
+        // Some parameters keep their defaults, as in most recipes.
         if random.below(3) > 0 {
             let drawn = value(spec, cell, file, random);
             node.set_param(i, &drawn)
@@ -134,7 +133,7 @@ fn with_node(recipe: &Recipe, op: &Node, random: &mut Random) -> Recipe {
     recipe
 }
 
-/// A layer of a node, or a number if there is none, and sometimes otherwise.
+/// A layer of a node, or a number if there is none, and sometimes also otherwise.
 fn input(recipe: &Recipe, random: &mut Random) -> Input {
     if recipe.nodes().is_empty() || random.below(8) == 0 {
         return Input::Value(*random.of(&[0.0, 1.0, -0.5, 300.0, 1e-9, 1e9]));
@@ -143,7 +142,7 @@ fn input(recipe: &Recipe, random: &mut Random) -> Input {
     Input::Node(format!("{}.{}", named.name, random.of(named.node.layers()).name))
 }
 
-/// The recipe with outputs: some layers of the last node, and one of any.
+/// The recipe with outputs: some layers of the last node, and one layer of any node.
 fn with_outputs(recipe: &Recipe, random: &mut Random) -> Recipe {
     let mut made = recipe.clone();
     if let Some(last) = recipe.nodes().last() {
@@ -157,7 +156,7 @@ fn with_outputs(recipe: &Recipe, random: &mut Random) -> Recipe {
     made
 }
 
-/// Whether a recipe can be made over a window, at a cost that allows to make it often.
+/// Whether a recipe can be made over a window, at a cost that allows many runs.
 fn is_possible(session: &Session, recipe: &Recipe, window: &Window, most_work: f64, tally: &mut Tally) -> bool {
     let mut recipe = recipe.clone();
     let Some(last) = recipe.nodes().last() else { return false };

@@ -1,15 +1,15 @@
-//! Values of parameters, drawn from the whole range that is declared.
+//! Values of parameters, drawn from the whole declared range.
 
 use crate::support::Random;
 use orogen::declare::{ParamSpec, Shape, TableSpec};
 use orogen::expression::function::Function;
 use orogen::value::{Spanned, Value};
 
-/// What stands in for a bound that is not declared.
+/// Replaces a bound that is not declared.
 const UNBOUNDED: f64 = 1e9;
 
-/// A value of the declared kind and range. Half of the lengths and areas are of the order of `cell`, as most others
-/// have no effect that a small window shows. `file` is what a file name may be.
+/// A value of the declared kind and range. Half of the lengths and areas are of the order of `cell`, because most
+/// others have no visible effect in a small window. `file` is used for file names.
 pub fn value(spec: &ParamSpec, cell: f64, file: &str, random: &mut Random) -> Value {
     let number = |random: &mut Random| number(spec, cell, random);
     match spec.shape {
@@ -23,7 +23,7 @@ pub fn value(spec: &ParamSpec, cell: f64, file: &str, random: &mut Random) -> Va
         }
         Shape::Pair => {
             let mut pair = [number(random), number(random)];
-            // Often they are the ends of a range.
+            // Often the ends of a range.
             if random.below(2) == 0 {
                 pair.sort_by(f64::total_cmp);
             }
@@ -94,7 +94,7 @@ fn number(spec: &ParamSpec, cell: f64, random: &mut Random) -> f64 {
     drawn.clamp(low, high)
 }
 
-/// An expression of the names a, b and c, and any of the functions.
+/// An expression of the names a, b and c, and of any functions.
 fn expression(depth: u32, random: &mut Random) -> String {
     if depth == 0 || random.below(6) == 0 {
         return match random.below(5) {

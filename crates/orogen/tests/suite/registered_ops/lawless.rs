@@ -230,8 +230,8 @@ fn an_op_that_takes_longer_than_it_says_is_found_by_the_clock() {
     assert!(broken.law == Law::Cancel && broken.message.contains("it went on for"), "{broken}");
 }
 
-/// A halo that is one sample too small is found, for a filter and for a levelled op; one that is just enough breaks no
-/// law.
+/// A halo that is one sample too small is detected, for a filter and for a levelled op; a halo that is just large
+/// enough breaks no law.
 #[test]
 fn a_halo_one_sample_too_small_breaks_a_law() {
     for (halo, holds) in [(0, false), (8, false), (9, true), (10, true)] {

@@ -1,4 +1,4 @@
-//! The ops of a program: a field, a filter, a levelled op and a solver.
+//! The custom ops of a program: a field, a filter, a levelled op and a solver.
 
 use orogen::op::{
     Context, Field, Filter, GridInputs, Inputs, Levelled, Levels, Solution, Solver, Sources, WorldParams,
@@ -254,7 +254,7 @@ impl Solver for Above {
     }
 }
 
-/// Ops under the names of others.
+/// Ops with the names of other ops.
 pub mod other {
     use super::*;
 

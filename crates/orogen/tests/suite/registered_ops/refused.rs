@@ -1,4 +1,4 @@
-//! Ops whose names or keys are refused.
+//! Ops whose names or keys are rejected.
 
 use orogen::op::{Field, Inputs, WorldParams};
 use orogen::{Points, Result};

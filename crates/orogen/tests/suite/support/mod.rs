@@ -1,4 +1,4 @@
-//! Helpers of the tests: a recipe for every node.
+//! Helpers for the tests: a recipe for every node.
 
 pub mod water;
 
@@ -9,7 +9,7 @@ use orogen::node::Node;
 use orogen::value::{Spanned, Value};
 use orogen::{Options, Recipe, World, WorldSpec};
 
-/// Whether the tests write what they would compare: `OROGEN_BLESS=1`.
+/// Whether the tests write the expected values instead of comparing with them: `OROGEN_BLESS=1`.
 pub fn bless() -> bool {
     let value = std::env::var_os("OROGEN_BLESS");
     assert!(
@@ -31,12 +31,12 @@ impl Random {
         (z ^ (z >> 31)) % n
     }
 
-    /// A number from 0 to 1, less than 1.
+    /// A number from 0 to 1, excluding 1.
     pub fn share(&mut self) -> f64 {
         self.below(1 << 53) as f64 / (1u64 << 53) as f64
     }
 
-    /// One of these.
+    /// One of the given values.
     pub fn of<'a, T>(&mut self, all: &'a [T]) -> &'a T {
         &all[self.below(all.len() as u64) as usize]
     }
@@ -66,7 +66,7 @@ fn drawing(cell: f64) -> Value {
     list(vec![line(&first), line(&second)])
 }
 
-/// Strokes of every mode for the node that paints, in a small world: they cross each other and themselves.
+/// Strokes of every mode for the node that paints, in a small world. They cross each other and themselves.
 fn strokes(cell: f64) -> Strokes {
     let stroke = |points: &[[f64; 2]], radius: f64, hardness: f64, mode: StrokeMode, value: f64| Stroke {
         points: points.iter().map(|point| point.map(|part| part * cell)).collect(),
@@ -85,8 +85,8 @@ fn strokes(cell: f64) -> Strokes {
     ])
 }
 
-/// The node alone, each input a noise of its own: see [`laws::recipe_of`]. Lengths are fitted so that a small world
-/// shows every effect.
+/// A recipe of the node with a different noise for each input: see [`laws::recipe_of`]. Lengths are fitted so that a
+/// small world shows every effect.
 pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     let mut node = node.clone();
     let spec = node.spec();
@@ -98,11 +98,11 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ("path" | "polygon", "smooth") => Value::Flag(true),
             ("path" | "polygon", "tolerance") => Value::Number(0.01 * world.cell),
             ("path" | "polygon", "falloff") => Value::Number(6.7 * world.cell),
-            // Few levels, of which the finest is near the cell, and shores within the world.
+            // Few levels, with the finest near the cell, and shores within the world.
             ("continents", "cell") => Value::Number(1.7 * world.cell),
             ("continents", "halvings") => Value::Integer(3),
             ("continents", "size") => Value::Number(0.01),
-            // Fewer than the candidates.
+            // Fewer than the number of candidates.
             ("select-share", "share") => Value::Number(0.05),
             ("blur", "radius") => Value::Number(3.7 * world.cell),
             ("bake", "cell") => Value::Number(2.5 * world.cell),
@@ -127,7 +127,7 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ("distance", "reach") => Value::Number(8.3 * world.cell),
             ("topographic-position", "radius") => Value::Number(4.4 * world.cell),
             ("geomorphons", "reach") => Value::Number(6.3 * world.cell),
-            // The noise rises by a metre at most, over many metres.
+            // The noise rises by at most one metre, over many metres.
             ("geomorphons", "flat") => Value::Number(0.2),
             ("height-above-drainage", "stream") => Value::Number(40.0 * world.cell * world.cell),
             ("viewshed", "observer") => pair(40.3 * world.cell, 31.0 * world.cell),
@@ -156,7 +156,7 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     }
     let mut recipe = laws::recipe_of(&node, world, masked);
     if spec.op == "biome" {
-        // It reads temperatures and rain.
+        // The op reads temperatures and rain.
         recipe.add("warm", Remap { source: Input::from("in0"), to: [-20.0, 30.0], ..Remap::default() });
         recipe.add("wet", Remap { source: Input::from("in1"), to: [0.0, 3000.0], ..Remap::default() });
         recipe.change(|node| {
@@ -167,7 +167,7 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
         });
     }
     if spec.op == "flow-direction" {
-        // It reads codes of directions, 0 to 8.
+        // The op reads codes of directions, 0 to 8.
         let (from, to) = ([-0.5, 0.5], [0.0, 8.5]);
         recipe.add("codes", Remap { source: Input::from("soft"), from, to, clamp: true });
         recipe.change(|node| {

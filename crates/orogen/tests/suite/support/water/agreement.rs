@@ -1,33 +1,33 @@
-//! Agreement of the heights with the drainage areas: whether D8 on the heights finds the rivers of `flow`.
+//! Agreement of the heights with the drainage areas: whether D8 on the heights gives the rivers of `flow`.
 
 use super::layers::{cells_to_edge, neighbors};
 use super::network::Network;
 use orogen::grid::hydrology::steepest::Descent;
 use orogen::grid::hydrology::{Outlets, accumulate, route_carving};
 
-/// Largest difference between the areas of a cell that agrees, relative to the area in `flow`.
+/// Maximum difference between the areas of a cell that agrees, relative to the area in `flow`.
 const TOLERANCE: f64 = 0.2;
 
-/// Drainage area from which on rivers that enter the window are followed, in m².
+/// Drainage area in m² from which rivers that enter the window are followed.
 const RIVER: f64 = 1e6;
 
-/// Cells of rivers with an area in one range.
+/// Cells of rivers whose areas are in one range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Agreement {
-    /// Areas from and below, in m².
+    /// The range of areas in m²: the lower end is included, the upper end is not.
     pub range: [f64; 2],
     /// Cells whose catchment lies in the window.
     pub cells: usize,
-    /// Of these, the cells with a D8 area within 20 % of that in `flow`, at most one cell away.
+    /// Number of these cells with a D8 area within 20 % of the area in `flow`, at most one cell away.
     pub agree: usize,
 }
 
 /// Routes the bed by steepest descent, with depressions carved, and compares drainage areas in each range.
 ///
 /// A catchment lies in the window if no water enters it from the edge, neither by D8 on the heights nor in rivers of
-/// `flow`. By D8, water enters wherever the catchment touches the row of cells beside the edge. Cells beside one with
-/// water from the edge are excluded, too, and rivers below a lake that crosses the edge: its water leaves there. Cells
-/// in lakes and the sea are not compared.
+/// `flow`. By D8, water enters wherever the catchment touches the row of cells next to the edge. Cells next to one with
+/// water from the edge are excluded too, and so are rivers below a lake that crosses the edge, because its water leaves
+/// there. Cells in lakes and the sea are not compared.
 pub fn measure(network: &Network, ranges: &[[f64; 2]]) -> Vec<Agreement> {
     let water = network.water;
     let window = water.window();

@@ -1,28 +1,28 @@
-//! Beds of rivers: whether they descend.
+//! Beds of rivers: checks whether they descend.
 
 use super::layers::{cells_to_edge, neighbors};
 use super::network::Network;
 use orogen::grid::hydrology::direction::DISTANCES;
 
-/// Drainage area from which on a cell belongs to a river here, in m².
+/// Drainage area in m² from which a cell belongs to a river.
 const RIVER: f64 = 5e6;
 
-/// Links from a river's cell to its receiver.
+/// Statistics of links from the cells of rivers to their receivers.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Beds {
-    /// All links.
+    /// Number of links.
     pub links: usize,
-    /// Links along which the bed rises.
+    /// Number of links along which the bed rises.
     pub rising: usize,
     /// The greatest rise, in m.
     pub greatest: f32,
-    /// Rivers that end on land: cells with no neighbor downstream, in a lake or in the sea.
+    /// Rivers that end on land: cells without a neighbor downstream, in a lake or in the sea.
     pub ends: usize,
 }
 
-/// Compares the bed of every river cell with that of its receiver; in a receiver that is a lake or the sea, with the
-/// water surface. Cells in lakes and the sea have no link. A river that ends on land is linked to the neighbor in
-/// the direction of steepest descent.
+/// Compares the bed of every river cell with the bed of its receiver; if the receiver is a lake or the sea, with the
+/// water surface. Cells in lakes and the sea have no link. A river that ends on land is linked to the neighbor in the
+/// direction of steepest descent.
 pub fn measure(network: &Network) -> Beds {
     let water = network.water;
     let (window, bed) = (water.window(), water.bed.data());

@@ -1,4 +1,4 @@
-//! Borders of tiles: whether rivers continue on the other side.
+//! Borders of tiles: checks whether rivers continue on the other side.
 
 use super::layers::{Tiles, Water, cells_to_edge, neighbors};
 use super::mosaic::{Mosaic, TILES};
@@ -8,25 +8,25 @@ use orogen::{Error, ErrorKind, Result, Window};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-/// Drainage area from which on a cell belongs to a river here, in m².
+/// Drainage area in m² from which a cell belongs to a river.
 const RIVER: f64 = 1e6;
 
-/// Cells near the edge of a window that are not checked: the receivers there may be outside.
+/// Width of the edge of a window that is not checked, in cells: receivers there may be outside.
 const MARGIN: usize = 2;
 
-/// Rivers at the borders of tiles.
+/// Statistics of rivers at the borders of tiles.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Borders {
-    /// Borders between two tiles.
+    /// Number of borders between two tiles.
     pub borders: usize,
-    /// Rivers that cross them.
+    /// Number of rivers that cross the borders.
     pub crossings: usize,
-    /// Cells at the borders where a river is cut: without a receiver, or with one across the border that has less than
-    /// half of the area.
+    /// Cells at the borders where a river is cut: without a receiver, or with a receiver across the border that has
+    /// less than half of the area.
     pub cut: usize,
     /// Cells at the borders that are not cut, but whose receiver across the border has a smaller area.
     pub falling: usize,
-    /// Cells at the borders that are not cut, but half of whose area goes nowhere or comes from nowhere.
+    /// Cells at the borders that are not cut, but where half of the area has no source or no destination.
     pub unbalanced: usize,
 }
 
@@ -50,7 +50,7 @@ enum Border {
 }
 
 impl Border {
-    /// Whether a cell lies behind the border, east or south of it.
+    /// Whether a cell lies east or south of the border.
     fn is_behind(self, window: &Window, cell: usize) -> bool {
         match self {
             Border::Column(column) => cell % window.width >= column,
@@ -58,7 +58,7 @@ impl Border {
         }
     }
 
-    /// The cells on both sides.
+    /// The cells on both sides of the border.
     fn cells(self, window: &Window) -> impl Iterator<Item = usize> + use<> {
         let (width, height) = (window.width, window.height);
         let count = if let Border::Column(_) = self { height } else { width };
@@ -69,30 +69,31 @@ impl Border {
     }
 }
 
-/// The inner borders of a mosaic.
+/// Measures the inner borders of a mosaic.
 pub fn measure(network: &Network, mosaic: &Mosaic) -> Borders {
     measure_lines(network, (1..TILES).map(|k| k * mosaic.side))
 }
 
-/// The middle lines of the tiles of a mosaic, as if they were borders, for comparison: what is found there is not due
-/// to tiles.
+/// Measures the middle lines of the tiles of a mosaic as if they were borders, for comparison: faults found there are
+/// not caused by tiles.
 pub fn measure_middles(network: &Network, mosaic: &Mosaic) -> Borders {
     measure_lines(network, (0..TILES).map(|k| k * mosaic.side + mosaic.side / 2))
 }
 
-/// Borders before these columns and rows.
+/// Measures borders before these columns and rows.
 fn measure_lines(network: &Network, lines: impl Iterator<Item = usize>) -> Borders {
     let mut found = Borders::default();
     for border in lines.flat_map(|k| [Border::Column(k), Border::Row(k)]) {
         found += measure_border(network, border);
-        // One for each tile along it.
+        // One border for each tile along the line.
         found.borders += TILES;
     }
     found
 }
 
-/// Pairs of adjacent windows of `side` x `side` cells: the first of each is made by one of `tiles`, the second by the
-/// other. Pairs are made side by side, on `threads` threads. They lie inside `extent`; `seed` chooses where.
+/// Measures pairs of adjacent windows of `side` x `side` cells. The first window of each pair is made by one of
+/// `tiles`, the second by the other. Pairs are made in parallel on `threads` threads. They lie inside `extent`; `seed`
+/// determines the positions.
 pub fn measure_pairs(tiles: [Tiles; 2], places: &Places, threads: usize) -> Result<Pairs> {
     let next = AtomicUsize::new(0);
     let work = || {
@@ -118,7 +119,7 @@ pub fn measure_pairs(tiles: [Tiles; 2], places: &Places, threads: usize) -> Resu
     Ok(found)
 }
 
-/// What pairs of windows have.
+/// Statistics of pairs of windows.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Pairs {
     /// Between the two windows.
@@ -134,10 +135,10 @@ impl std::ops::AddAssign for Pairs {
     }
 }
 
-/// Where pairs of windows lie.
+/// Positions of pairs of windows.
 #[derive(Debug, Clone, Copy)]
 pub struct Places {
-    /// All pairs are inside it.
+    /// The window that contains all pairs.
     pub extent: Window,
     /// Cells along the sides of a window.
     pub side: usize,
@@ -146,15 +147,15 @@ pub struct Places {
     /// Number of pairs in the same region, which are made from the same coarse tiles. The regions are at random
     /// positions, too.
     pub near: usize,
-    /// Chooses the positions.
+    /// Seed of the positions.
     pub seed: i64,
 }
 
-/// Cells along the sides of the square in which pairs are near each other.
+/// Cells along the sides of the square that contains the pairs of one region.
 const REGION: usize = 1024;
 
 impl Places {
-    /// The window of a pair, and whether one is beside the other instead of below it.
+    /// The window of a pair, and whether its windows are side by side instead of one below the other.
     fn pair(&self, pair: i64) -> (Window, bool) {
         let Places { extent, side, seed, .. } = *self;
         let beside = hashed(pair, seed).is_multiple_of(2);
@@ -170,7 +171,7 @@ impl Places {
     }
 }
 
-/// A window of this size at a position inside another one that hashes of `index` choose.
+/// A window of this size inside another one, at a position from hashes of `index`.
 fn placed([width, height]: [usize; 2], within: &Window, index: i64, seed: i64) -> Window {
     let at = |from: i64, cells: usize, taken: usize, salt: i64| {
         from + (u64::from(hashed(index, seed ^ salt)) % (cells.saturating_sub(taken) as u64 + 1)) as i64
@@ -191,7 +192,7 @@ fn measure_pair(tiles: [Tiles; 2], places: &Places, pair: i64) -> Result<Pairs> 
     Ok(Pairs { borders: line(places.side), middles: line(places.side / 2) })
 }
 
-/// The window of a pair, pasted of its two windows.
+/// The window of a pair, composed of its two windows.
 fn paste_pair(tiles: [Tiles; 2], places: &Places, window: &Window) -> Result<Water> {
     let mut water: Option<Water> = None;
     for (part, tiles) in window.tiles(places.side).zip(tiles) {
@@ -201,7 +202,7 @@ fn paste_pair(tiles: [Tiles; 2], places: &Places, window: &Window) -> Result<Wat
     water.ok_or_else(|| Error::new(ErrorKind::Internal, "a pair has no windows"))
 }
 
-/// The number of the first `count` pairs that differ from the same window made at once.
+/// The number of pairs, among the first `count`, that differ from the same window made at once.
 pub fn count_different(tiles: [Tiles; 2], places: &Places, count: usize) -> Result<usize> {
     let mut different = 0;
     for pair in 0..count.min(places.pairs) as i64 {
@@ -211,7 +212,7 @@ pub fn count_different(tiles: [Tiles; 2], places: &Places, count: usize) -> Resu
     Ok(different)
 }
 
-/// Rivers at one border of a window, except near the ends of the border.
+/// Measures rivers at one border of a window, except near the ends of the border.
 fn measure_border(network: &Network, border: Border) -> Borders {
     let water = network.water;
     let window = water.window();

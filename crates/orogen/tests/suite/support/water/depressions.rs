@@ -3,12 +3,12 @@
 use super::layers::Water;
 use orogen::grid::hydrology::{Outlets, fill};
 
-/// Depressions of the bed.
+/// Statistics of depressions of the bed.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Depressions {
-    /// Cells outside lakes and the sea.
+    /// Number of cells outside lakes and the sea.
     pub land: usize,
-    /// Of these, the cells in depressions.
+    /// Number of these cells that are in depressions.
     pub cells: usize,
     /// Depth of the deepest, in m.
     pub deepest: f32,

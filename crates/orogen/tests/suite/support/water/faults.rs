@@ -1,4 +1,4 @@
-//! Faults for tests of the measurements: layers of some cells changed in every tile that has these cells.
+//! Faults for tests of the measurements: layers of some cells are changed in every tile that contains them.
 
 use super::layers::{Tiles, Water};
 use orogen::{Result, Window};

@@ -1,17 +1,17 @@
-//! Lakes: whether their surface is level and their shores hold it.
+//! Lakes: checks whether their surfaces are level and their shores contain them.
 
 use super::layers::neighbors;
 use super::network::Network;
 
-/// Cells of the river below an outlet that may lie beside the lake.
+/// Number of cells of the river below an outlet that may be next to the lake.
 const OUTLET: usize = 3;
 
-/// Surfaces of lakes.
+/// Statistics of the surfaces of lakes.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Lakes {
-    /// Cells of lakes.
+    /// Number of cells of lakes.
     pub cells: usize,
-    /// The greatest difference between the surfaces of two neighbors in lakes, in m.
+    /// The greatest difference between the surfaces of two neighboring lake cells, in m.
     pub step: f32,
     /// The greatest height of a surface above a dry neighbor that is not in the river below the outlet, in m.
     pub above_shore: f32,

@@ -16,7 +16,7 @@ pub struct Water {
     pub lakes: Grid,
     /// Codes of flow directions, if the world has them.
     pub receiver: Option<Grid>,
-    /// The sea is where the bed is lower.
+    /// The sea level in m; the sea is where the bed is lower.
     pub sea_level: f32,
 }
 
@@ -41,7 +41,7 @@ impl Water {
         f64::from(self.flow.data()[cell])
     }
 
-    /// Writes another window of the same world into this one, where they overlap.
+    /// Copies another window of the same world into this one, where they overlap.
     pub fn paste(&mut self, other: &Water) {
         self.bed.paste(&other.bed);
         self.flow.paste(&other.flow);
@@ -65,7 +65,7 @@ impl Water {
     }
 }
 
-/// Makes one tile. No tile may depend on another one.
+/// A function that makes one tile. No tile may depend on another one.
 pub type Tiles<'a> = &'a (dyn Fn(&Window) -> Result<Water> + Sync);
 
 /// Tiles of a recipe: each comes from a new world in a new session.
@@ -74,8 +74,8 @@ pub fn tiles_of(recipe: &Recipe, threads: Option<usize>) -> impl Fn(&Window) -> 
     move |window| tile(&recipe, &Session::new(Options { threads, ..Options::default() })?, window)
 }
 
-/// Tiles of a recipe: each comes from a new world, and all worlds share the solutions of a session. A bounded world is
-/// solved once.
+/// Tiles of a recipe: each comes from a new world, and all worlds share the solutions of a session, so a bounded world
+/// is solved once.
 pub fn tiles_in(recipe: &Recipe, session: &Session) -> impl Fn(&Window) -> Result<Water> + use<> {
     let (recipe, session) = (recipe.clone(), session.clone());
     move |window| tile(&recipe, &session, window)
@@ -87,7 +87,7 @@ fn tile(recipe: &Recipe, session: &Session, window: &Window) -> Result<Water> {
     let numbered = has(&"lakes") && world.kind("lakes")? == LayerKind::Label;
     let layers: Vec<&str> = ["height", "flow", "lakes", "receiver"].into_iter().filter(has).collect();
     let layers: Vec<&str> = layers.into_iter().chain(numbered.then_some("surface")).collect();
-    // All layers at once: the levels that they are made of are made once.
+    // All layers at once, so that the levels they are made from are made only once.
     let mut made: HashMap<&str, Grid> =
         layers.iter().copied().zip(world.grids(&layers, window, &Progress::none())?).collect();
     let missing = |layer: &str| Error::new(ErrorKind::Recipe, format!("the recipe has no output `{layer}`"));
@@ -106,7 +106,7 @@ fn tile(recipe: &Recipe, session: &Session, window: &Window) -> Result<Water> {
 fn depth(labels: &Grid, surface: &Grid, bed: &Grid) -> Grid {
     let mut depth = labels.clone();
     for (label, (surface, bed)) in depth.data_mut().iter_mut().zip(surface.data().iter().zip(bed.data())) {
-        // A lake is a lake even where rounding leaves no depth.
+        // A lake remains a lake even where rounding leaves no depth.
         *label = if *label > 0.0 { (surface - bed).max(f32::MIN_POSITIVE) } else { 0.0 };
     }
     depth

@@ -1,4 +1,4 @@
-//! Measures whether the water of a world holds on a mosaic of tiles that are made apart and pasted without any repair.
+//! Measures whether water is consistent on a mosaic of tiles that are made separately and joined without any repair.
 //!
 //! Reads the layers `height` (the bed, in m), `flow` (drainage area, in m²) and, if the recipe has them, `lakes` (depth
 //! of standing water, in m; or numbers of lakes, with their water surface in the layer `surface`) and `receiver` (flow

@@ -6,7 +6,7 @@ use orogen::{Error, ErrorKind, Result, Window};
 /// Tiles along each side of a mosaic.
 pub const TILES: usize = 3;
 
-/// Square tiles of `side` cells, 3 x 3 of them; the first cell of the first tile is `origin`.
+/// 3 x 3 square tiles of `side` cells; the first cell of the first tile is at `origin`.
 #[derive(Debug, Clone, Copy)]
 pub struct Mosaic {
     /// Distance between samples, in m.
@@ -24,7 +24,7 @@ impl Mosaic {
         Window::new(TILES * self.side, TILES * self.side, self.cell).at(x, y)
     }
 
-    /// Makes every tile and pastes them.
+    /// Makes every tile and joins them.
     pub fn make(&self, tiles: Tiles) -> Result<Water> {
         let mut whole: Option<Water> = None;
         for part in self.window().tiles(self.side) {

@@ -1,10 +1,10 @@
 //! The receiver of every cell, found from drainage areas.
 //!
 //! Drainage areas alone determine the network almost everywhere: the area of a cell is its own area plus the areas of
-//! its donors. From the largest area to the smallest, each cell therefore takes, of the neighbors downstream, the one
-//! whose area without its donors so far fits best. The neighbor with the largest area is often not the receiver: at a
-//! bend it is the cell after the receiver, and where two rivers run side by side, it may belong to the other river. One
-//! receiver of a river in some thousands is still another one than the world's.
+//! its donors. Cells are processed from the largest area to the smallest. Each takes the neighbor downstream whose area
+//! minus its donors so far fits best. The neighbor with the largest area is often not the receiver: at a bend it is the
+//! cell after the receiver, and where two rivers run side by side, it may belong to the other river. In some thousands
+//! of river cells, one receiver still differs from the world's.
 //!
 //! Of two neighbors with the same area, the one with the lower surface is downstream.
 
@@ -20,7 +20,7 @@ pub struct Network<'a> {
     /// The layers.
     pub water: &'a Water,
     receivers: Vec<u32>,
-    /// Area of each cell without its own and its donors' areas, in m².
+    /// Area of each cell minus its own area and the areas of its donors, in m².
     unexplained: Vec<f64>,
     /// Whether a cell's receiver had less than half of the cell's area left.
     starved: Vec<bool>,
@@ -30,7 +30,7 @@ impl Network<'_> {
     /// Reads `receiver` if the world has it, and finds the receivers from `flow` otherwise.
     pub fn new(water: &Water) -> Network<'_> {
         let (window, flow) = (water.window(), water.flow.data());
-        // Each cell after those downstream of it.
+        // Sorted such that each cell comes after the cells downstream of it.
         let mut order: Vec<u32> = (0..flow.len() as u32).collect();
         order.sort_unstable_by(|a, b| compare(water, *a as usize, *b as usize).then(a.cmp(b)));
         let mut network = Network {
@@ -56,8 +56,8 @@ impl Network<'_> {
         network
     }
 
-    /// Of the neighbors downstream, the one whose unexplained area exceeds that of the cell by the least; if none
-    /// does, the one with the largest unexplained area.
+    /// The neighbor downstream whose unexplained area exceeds the area of the cell by the least; if there is none, the
+    /// one with the largest unexplained area.
     fn best(&self, cell: usize) -> Option<usize> {
         // Areas are rounded to f32.
         let enough = |to: usize| self.unexplained[to] >= self.water.area(cell) * 0.999_999;
@@ -73,8 +73,8 @@ impl Network<'_> {
     }
 
     /// Whether the area of a cell does not continue: the cell has no receiver, or no neighbor is large enough to hold
-    /// half of the area beside its other donors. Where the receivers are not known, those are the cells with no other
-    /// neighbor downstream.
+    /// half of the area in addition to its other donors. If the receivers are not known, these are the cells without
+    /// another neighbor downstream.
     pub fn ends(&self, cell: usize) -> bool {
         let water = self.water;
         if self.receivers[cell] == MISSING || water.receiver.is_some() {
@@ -89,8 +89,8 @@ impl Network<'_> {
         self.starved[cell] && !downstream(water, cell).any(holds)
     }
 
-    /// Whether at least half of the area of a cell comes from nowhere: neither from the cell nor from its donors. Where
-    /// the receivers are not known, every neighbor upstream may be a donor.
+    /// Whether at least half of the area of a cell has no source: neither the cell nor its donors. If the receivers are
+    /// not known, every neighbor upstream may be a donor.
     pub fn begins(&self, cell: usize) -> bool {
         let (water, half) = (self.water, 0.5 * self.water.area(cell));
         let possible = || upstream(water, cell).map(|from| water.area(from)).sum::<f64>();
@@ -114,7 +114,8 @@ fn own_area(water: &Water) -> f64 {
     water.window().cell * water.window().cell
 }
 
-/// Whether water may flow from one cell to the other: the area is larger there, or the same and the surface lower.
+/// Whether water may flow from one cell to another: the area is larger there, or it is the same and the surface is
+/// lower.
 fn is_downstream(water: &Water, from: usize, to: usize) -> bool {
     compare(water, from, to).is_gt()
 }

@@ -1,4 +1,4 @@
-//! All figures of a mosaic, with their targets.
+//! All measurements of a mosaic, with their targets.
 
 use super::layers::Tiles;
 use super::mosaic::Mosaic;
@@ -6,11 +6,11 @@ use super::network::Network;
 use super::{agreement, beds, borders, depressions, lakes};
 use orogen::Result;
 
-/// Ranges of drainage areas in which rivers are compared, in m², and the target of the share that agrees, in %.
+/// Ranges of drainage areas in which rivers are compared, in m², and the target for the share that agrees, in %.
 const RANGES: [([f64; 2], Option<f64>); 4] =
     [([5e6, 10e6], None), ([10e6, 30e6], None), ([10e6, 100e6], Some(95.0)), ([100e6, f64::INFINITY], Some(99.0))];
 
-/// One figure.
+/// A measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// The name, with the unit.
@@ -23,7 +23,7 @@ pub struct Figure {
     pub target: Target,
 }
 
-/// The target of a figure.
+/// The target of a measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Target {
     /// For information only.
@@ -88,7 +88,7 @@ pub fn measure(tiles: Tiles, mosaic: &Mosaic) -> Result<Vec<Figure>> {
     Ok(figures)
 }
 
-/// The figures of pairs of adjacent windows.
+/// The measurements of pairs of adjacent windows.
 pub fn of_pairs(found: &borders::Pairs) -> Vec<Figure> {
     let borders::Pairs { borders, middles } = found;
     let mut figures = of_borders(&format!("borders of {} pairs", borders.borders), borders, true);
@@ -96,7 +96,7 @@ pub fn of_pairs(found: &borders::Pairs) -> Vec<Figure> {
     figures
 }
 
-/// The figures of borders, with targets or for comparison.
+/// The measurements of borders, with targets or for comparison.
 fn of_borders(place: &str, found: &borders::Borders, targets: bool) -> Vec<Figure> {
     let target = if targets { Target::AtMost(0.0) } else { Target::None };
     let figure = |name: &str, count: usize, target: Target| {
@@ -105,12 +105,12 @@ fn of_borders(place: &str, found: &borders::Borders, targets: bool) -> Vec<Figur
     vec![
         figure("rivers cut", found.cut, target),
         figure("areas unbalanced", found.unbalanced, target),
-        // Drainage areas of levels are carried down with a small error, in the middle of tiles, too.
+        // Drainage areas of levels are carried down with a small error, also in the middle of tiles.
         figure("areas that fall", found.falling, Target::None),
     ]
 }
 
-/// A table of figures, one a line.
+/// A table of measurements, one per line.
 pub fn table(figures: &[Figure]) -> String {
     let width = figures.iter().map(|figure| figure.name.chars().count()).max().unwrap_or(0);
     let mut text = format!("{:width$}  {:>10}  {:>10}  {:>10}\n", "figure", "value", "target", "of");
