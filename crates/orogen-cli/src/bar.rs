@@ -43,7 +43,7 @@ const INTERVAL: Duration = Duration::from_millis(100);
 /// Interval of lines for logs.
 const LOGGED: Duration = Duration::from_secs(1);
 
-/// Work is announced where no bar is shown if it takes longer; how long it runs before that is estimated.
+/// Estimated duration above which work is announced if no bar is shown, and the time after which it is estimated.
 const LONG: Duration = Duration::from_secs(60);
 const TRIAL: Duration = Duration::from_secs(5);
 
@@ -78,7 +78,7 @@ impl Bar {
         let heard = Arc::clone(&watch);
         let progress = Progress::new(move |share| heard.share.store(share.to_bits(), Ordering::Relaxed));
         let seen = Arc::clone(&watch);
-        // A separate thread, so that the remaining time is updated while the work reports nothing.
+        // A separate thread, so that the remaining time is updated even if the work reports nothing.
         let painter = std::thread::spawn(move || match mode {
             Mode::Plain => seen.print(LOGGED, |at| match at.left() {
                 Some(left) => format!("{:.0} %, {} left", at.percent(), duration(left)),
@@ -105,7 +105,7 @@ impl Drop for Bar {
     }
 }
 
-/// The state of work at a moment.
+/// The state of work at one moment.
 #[derive(Debug, Clone, Copy)]
 struct Moment {
     share: f64,
@@ -148,7 +148,7 @@ impl Watch {
                 say::error(&line(&self.moment()));
             }
         }
-        // The last line tells how the work ended.
+        // The last line says how the work ended.
         say::error(&line(&self.moment()));
     }
 

@@ -84,7 +84,7 @@ enum Command {
 impl Cli {
     /// Runs the command.
     pub fn run(self) -> Result<(), Failure> {
-        // A level is forced to find differences between levels, so an unknown level must be an error.
+        // The level is set to find differences between levels, so an unknown level must be an error.
         Level::environment().map_err(|wrong| Failure::Usage(format!("OROGEN_SIMD: {wrong}")))?;
         set_mode(self.progress);
         match self.command {

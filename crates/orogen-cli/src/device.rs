@@ -20,8 +20,8 @@ pub struct DeviceOption {
 }
 
 impl DeviceOption {
-    /// Opens the world of a recipe, with the device if it can be used. If it cannot, the processor stands in, and a
-    /// line on standard error says why.
+    /// Opens the world of a recipe, on the device if it can be used. If it cannot, the CPU is used, and a line on
+    /// standard error says why.
     pub fn open(&self, limits: &Limits, recipe: Recipe, budget: &Budget) -> Result<(World, Card), Failure> {
         let session = Session::new(limits.options(budget))?;
         let card = Card::open(&self.device, budget)?;
@@ -30,7 +30,7 @@ impl DeviceOption {
     }
 }
 
-/// Says why the processor computes in place of the device that was asked for.
+/// Reports why the CPU is used instead of the requested device.
 fn stands_in(why: impl fmt::Display) {
     say::error(&format!("{why}; the processor computes instead"));
 }
@@ -52,11 +52,11 @@ mod with_gpu {
     /// An opened graphics card, if there is one.
     pub struct Card {
         gpu: Option<Gpu>,
-        /// The memory of its buffers, which may be that of the processor.
+        /// The memory of its buffers, which may be shared with the CPU.
         _buffers: Option<Reservation>,
     }
 
-    /// The share of the memory limit that a buffer may have, and the number of buffers that exist at once.
+    /// Divisor of the memory limit for one buffer, and the number of buffers that exist at the same time.
     const SHARE: u64 = 8;
     const BUFFERS: u64 = 3;
 
@@ -79,17 +79,17 @@ mod with_gpu {
             }
         }
 
-        /// What paints pictures, if there is a card.
+        /// The device for painting pictures, if there is a card.
         pub fn render_device(&self) -> Option<Arc<dyn RenderDevice>> {
             self.gpu.as_ref().map(|gpu| Arc::new(gpu.clone()) as Arc<dyn RenderDevice>)
         }
 
-        /// The card's name, if it computed; a failure is reported after the work.
+        /// The card's name, if it computed something; a failure is reported after the work.
         pub fn used(&self) -> Option<String> {
             self.used_with(None)
         }
 
-        /// The same after work that the card may have refused.
+        /// Like [`used`](Card::used), after work that the card may have refused.
         pub fn used_with(&self, refused: Option<&str>) -> Option<String> {
             let gpu = self.gpu.as_ref()?;
             match (refused, gpu.failure()) {
@@ -131,17 +131,17 @@ mod without_gpu {
             session
         }
 
-        /// What paints pictures: the processor.
+        /// The device for painting pictures: none, so the CPU paints.
         pub fn render_device(&self) -> Option<Arc<dyn RenderDevice>> {
             None
         }
 
-        /// The card's name, if it computed.
+        /// The card's name, if it computed something: never.
         pub fn used(&self) -> Option<String> {
             None
         }
 
-        /// The same after work that a card may have refused.
+        /// Like [`used`](Card::used), after work that a card may have refused.
         pub fn used_with(&self, _: Option<&str>) -> Option<String> {
             None
         }

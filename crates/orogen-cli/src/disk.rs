@@ -4,7 +4,7 @@ use std::path::Path;
 
 use orogen::{Error, ErrorKind, grid::words};
 
-/// Free space, in bytes, on the disk that `path` is or would be on; `None` if the system does not tell.
+/// Free space, in bytes, on the disk that contains or would contain `path`; `None` if the system does not provide it.
 pub fn free_at(path: &Path) -> Option<u64> {
     let real = path.ancestors().find_map(|path| match path.as_os_str().is_empty() {
         true => Path::new(".").canonicalize().ok(),
@@ -13,7 +13,7 @@ pub fn free_at(path: &Path) -> Option<u64> {
     free_in(&real)
 }
 
-/// Asks the file system itself: lists of disks lack file systems in memory, and a path's prefix does not determine
+/// Asks the file system itself: lists of disks lack file systems in memory, and the prefix of a path does not determine
 /// where it is mounted.
 #[cfg(unix)]
 fn free_in(folder: &Path) -> Option<u64> {
@@ -28,7 +28,7 @@ fn free_in(folder: &Path) -> Option<u64> {
     holding.max_by_key(|disk| disk.mount_point().components().count()).map(sysinfo::Disk::available_space)
 }
 
-/// Fails if the disk of `path` does not have `needed` bytes, before the work starts.
+/// Fails before the work starts if the disk of `path` has less than `needed` bytes.
 pub fn afford(path: &Path, needed: u64, free: Option<u64>) -> Result<(), Error> {
     match free {
         Some(free) if needed > free => {
@@ -43,7 +43,7 @@ pub fn afford(path: &Path, needed: u64, free: Option<u64>) -> Result<(), Error> 
     }
 }
 
-/// Fails if the disk of `path` does not have `needed` bytes. An existing object that is not a file, such as a pipe, has
+/// Fails if the disk of `path` has less than `needed` bytes. An existing object that is not a file, such as a pipe, has
 /// no limit.
 pub fn afford_file(path: &Path, needed: u64) -> Result<(), Error> {
     match path.metadata() {

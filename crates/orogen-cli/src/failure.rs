@@ -18,7 +18,7 @@ pub enum Failure {
     Interrupted { message: String, code: u8 },
     /// Everything has been reported already: exit code 1.
     Told,
-    /// The reader of our output has closed the pipe: no error, and nothing to report.
+    /// The reader of the output has closed the pipe; this is not an error and is not reported.
     BrokenPipe,
 }
 

@@ -8,8 +8,8 @@ use orogen::{Error, ErrorKind};
 
 use crate::failure::Failure;
 
-/// The flag that an interruption sets. The first one cancels the work, which cleans up; a second one ends the process
-/// at once.
+/// The flag that an interruption sets. The first interruption cancels the work, which cleans up; a second one ends the
+/// process at once.
 pub fn flag() -> Arc<AtomicBool> {
     Arc::clone(&shared().asked)
 }
@@ -24,7 +24,7 @@ pub fn asked() -> bool {
     shared().asked.load(Ordering::Relaxed)
 }
 
-/// What the signals of this process have set.
+/// The state that the signals of this process set.
 struct Interruption {
     asked: Arc<AtomicBool>,
     signal: Signal,
@@ -53,12 +53,12 @@ mod unix {
     pub struct Signal(Arc<AtomicUsize>);
 
     impl Signal {
-        /// Lets signals set `asked`, and end the process if it is set. A signal without a handler keeps its default
-        /// effect.
+        /// Lets signals set `asked`, and end the process if it is already set. A signal without a handler keeps its
+        /// default effect.
         pub fn handled(asked: &Arc<AtomicBool>) -> Signal {
             let last = Arc::new(AtomicUsize::new(SIGINT as usize));
             for signal in [SIGINT, SIGTERM, SIGHUP] {
-                // In this order: the condition is that of an earlier signal.
+                // The order matters: the condition must be false for the first signal.
                 let _ = flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(asked))
                     .and_then(|_| flag::register_usize(signal, Arc::clone(&last), signal as usize))
                     .and_then(|_| flag::register(signal, Arc::clone(asked)));

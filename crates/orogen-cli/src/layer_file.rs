@@ -1,4 +1,4 @@
-//! A layer over a window as one file, with the message that tells what was written.
+//! Writing a layer over a window to one file, with a message about it.
 
 use std::path::Path;
 
@@ -12,8 +12,7 @@ use crate::failure::Failure;
 use crate::sink::Sink;
 use crate::{finite, interrupt};
 
-/// Writes the layer of `job` over a window to `sink`, the output for `out`. `origin` stands behind the size in the
-/// message.
+/// Writes the layer of `job` over a window to `sink`, the output for `out`. `origin` follows the size in the message.
 ///
 /// # Errors
 /// If making or writing fails, or no sample is finite.
@@ -29,7 +28,7 @@ pub fn write(
     let (bar, progress) = Bar::new(quiet);
     let Written { words, count, .. } = match sink {
         Sink::Stdout => sink.write(|out| job.to_stream(world, out, &progress))?,
-        // Including sidecars.
+        // Includes sidecars.
         Sink::File(output) => job
             .to_file(world, output, &progress)
             .map_err(|error| interrupt::explain(error.into(), "nothing was written"))?,

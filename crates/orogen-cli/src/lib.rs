@@ -1,9 +1,9 @@
 //! The `orogen` command: terrains from recipes.
 //!
 //! It is a library to shorten the build: Cargo compiles a library as soon as the metadata of its dependencies exists,
-//! but a binary only after all of them are finished. Programs use the crate `orogen` instead.
+//! but a binary only after all of them are finished. Programs should use the crate `orogen` instead.
 #![forbid(unsafe_code)]
-// These macros panic if the other end of a pipe is closed; `say` does not.
+// The denied macros panic if the other end of a pipe is closed; the functions of `say` do not.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 mod bar;
@@ -42,7 +42,7 @@ pub fn run() -> ExitCode {
     run_with(std::env::args_os())
 }
 
-/// Runs the command with these words, the first of which is the name of the program.
+/// Runs the command with these words; the first is the name of the program.
 #[must_use]
 pub fn run_with(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
     match cli::Cli::try_parse_from(words).map_or_else(usage::answer, cli::Cli::run) {

@@ -1,4 +1,4 @@
-//! The `orogen` command. All of it is in the library beside it.
+//! The `orogen` command. The code is in the library of this package.
 #![forbid(unsafe_code)]
 
 use std::process::ExitCode;

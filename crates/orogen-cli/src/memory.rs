@@ -5,7 +5,8 @@ use sysinfo::{Pid, ProcessRefreshKind, ProcessesToUpdate, System};
 
 use crate::values::bytes::Bytes;
 
-/// Half of the free memory of the machine or of the container, whichever is less; `None` if the system does not tell.
+/// Half of the free memory of the machine or of the container, whichever is less; `None` if the system does not provide
+/// it.
 pub fn share_of_free() -> Option<u64> {
     let mut system = System::new().ok()?;
     system.refresh_memory();
@@ -26,7 +27,7 @@ pub fn share_of_free() -> Option<u64> {
 /// Memory of the program itself, in bytes: code, runtime and tables of libraries.
 const PROGRAM: u64 = 14 << 20;
 
-/// Memory per thread, in bytes, beside its work: the used part of the stack, and the allocator's cache.
+/// Memory per thread, in bytes, in addition to its work: the used part of the stack, and the allocator's cache.
 const THREAD: u64 = 256 << 10;
 
 /// The default number of threads.
@@ -34,7 +35,7 @@ pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// The budget for the work, from the limit of the whole process (by default [`share_of_free`]) minus the program's own
+/// The budget for the work: the limit of the whole process (by default [`share_of_free`]) minus the program's own
 /// memory.
 pub fn budget(allowed: Option<Bytes>, threads: usize) -> Budget {
     let budget = Budget::of(allowed.map(|bytes| bytes.0).or_else(share_of_free));

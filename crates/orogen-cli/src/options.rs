@@ -36,7 +36,7 @@ pub struct Limits {
     pub no_cache: bool,
 }
 
-/// How a command runs: which files it may replace, what it may use, and whether it tells.
+/// How a command runs: which files it may replace, its limits, and whether it prints messages.
 #[derive(Debug, Clone, Args)]
 pub struct RunOptions {
     #[command(flatten)]
@@ -48,7 +48,7 @@ pub struct RunOptions {
     pub quiet: bool,
 }
 
-/// What a command has read before it opens a world.
+/// The inputs that a command reads before it opens a world.
 pub struct Opened {
     pub source: Source,
     pub recipe: Recipe,
@@ -67,7 +67,7 @@ impl RunOptions {
     }
 }
 
-/// What a command without a world of its own may replace and use.
+/// Options of a command without a world: which files it may replace, and its memory limit.
 #[derive(Debug, Clone, Copy, Args)]
 pub struct DrawOptions {
     /// Memory limit of the program, such as 512MiB or 2GiB [default: half of the free memory]
@@ -96,10 +96,10 @@ impl Limits {
         memory::budget(self.memory, self.threads())
     }
 
-    /// The limits, as the library takes them.
+    /// Converts the limits to the library's options.
     pub fn options(&self, budget: &Budget) -> Options {
         let threads = self.threads();
-        // For functions on grids. It fails only if it was set before (with --watch), to the same number.
+        // For functions on grids. It only fails if it was already set to the same number (with --watch).
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
         Options {
             threads: Some(threads),
@@ -110,7 +110,7 @@ impl Limits {
         }
     }
 
-    /// The requested number, at most the number of cores: more threads would only take memory.
+    /// The requested number of threads, at most the number of cores: more threads would only use memory.
     fn threads(&self) -> usize {
         let cores = memory::cores();
         self.threads.map_or(cores, |threads| usize::from(threads).min(cores))
@@ -127,7 +127,7 @@ impl Limits {
     }
 }
 
-/// The folder of the cache: the given one, otherwise that of the environment variable, otherwise the system's.
+/// The folder of the cache: the given one, otherwise from the environment variable, otherwise the system's.
 pub fn cache_folder(asked: Option<&PathBuf>) -> Option<PathBuf> {
     asked.cloned().or_else(FolderStore::usual_folder)
 }

@@ -45,10 +45,10 @@ pub struct Report {
     /// The transform from columns and rows to map coordinates, in GDAL's order, for a world on a map.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub geotransform: Option<[f64; 6]>,
-    /// The EPSG code of its coordinate system.
+    /// The EPSG code of the map's coordinate system.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crs: Option<String>,
-    /// Its coordinate system as well-known text.
+    /// The map's coordinate system as well-known text.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wkt: Option<String>,
 }
@@ -65,13 +65,13 @@ impl Report {
 /// files are complete.
 pub const FILES: [&str; 5] = ["height.png", "height8.png", "map.png", "recipe.toml", "summary.json"];
 
-/// The outputs in `folder`, if existing files may be replaced.
+/// The outputs in `folder`; fails if existing files may not be replaced.
 pub fn outputs(folder: &Path, policy: &OutputPolicy) -> Result<Vec<Output>> {
     FILES.iter().map(|name| policy.output(folder.join(name))).collect()
 }
 
-/// Writes all files to their `outputs`, or none: they are put in place only after all are written to disk. The map
-/// shows `lakes`, their depth in metres. `seconds` returns the duration of the command.
+/// Writes either all files to their `outputs`, or none: they are put in place only after all are written to disk. The
+/// map shows `lakes`, their depth in metres. `seconds` returns the duration of the command.
 pub fn write(
     outputs: &[Output],
     recipe: &Recipe,
@@ -118,7 +118,7 @@ fn places(pictures: &[Output], recipe: &Recipe, window: &Window) -> Result<Vec<S
     Ok(staged)
 }
 
-/// The comment above the recipe: the command line that reproduces the output.
+/// The comment at the top of the recipe: the command line that reproduces the output.
 fn again(recipe: &Recipe, grid: &Grid) -> String {
     let (width, height, cell) = (grid.width(), grid.height(), grid.window().cell);
     // The default view of an unbounded world is at its own cell and has a fixed size.

@@ -43,7 +43,7 @@ impl Paint {
         if self.0 { format!("\x1b[1;31m{text}\x1b[0m") } else { text.to_string() }
     }
 
-    /// `error: file:line:column: message`, then the line with the part underlined.
+    /// Formats `error: file:line:column: message`, then the line with the part underlined.
     fn diagnostic(&self, message: &str, place: Option<&Location>) -> String {
         let mut text = format!("{} ", self.red("error:"));
         if let Some(Location { file, line, column, .. }) = place {
@@ -86,7 +86,7 @@ fn one_column(c: char) -> char {
 /// Maximum length of a message; longer ones quote overlong input.
 const SENTENCE: usize = 2000;
 
-/// A message with control characters escaped, shortened in the middle if it is too long.
+/// A message with control characters escaped; it is shortened in the middle if it is too long.
 fn printable(text: &str) -> String {
     let text = &words::readable(text.to_string());
     let count = text.chars().count();

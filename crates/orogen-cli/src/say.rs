@@ -10,13 +10,14 @@ pub const SOFTWARE: &str = concat!("Orogen ", env!("CARGO_PKG_VERSION"));
 
 use crate::failure::Failure;
 
-/// Writes text to standard output. Names in it do not control a terminal: see [`harmless`].
+/// Writes text to standard output. Control characters in it are escaped: see [`harmless`].
 pub fn out(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
     stdout.write_all(harmless(text).as_bytes()).and_then(|()| stdout.flush()).map_err(|cause| Failure::stdout(&cause))
 }
 
-/// Writes a line to standard error, [`harmless`]. Failures are ignored, because they cannot be reported.
+/// Writes a line to standard error, with control characters escaped as by [`harmless`]. Failures are ignored, because
+/// they cannot be reported.
 pub fn error(line: &str) {
     painted(&harmless(line));
 }
@@ -29,12 +30,12 @@ pub fn once(line: &str) {
     }
 }
 
-/// Writes a line to standard error that has colors of its own.
+/// Writes a line with its own colors to standard error.
 pub fn painted(line: &str) {
     let _ = writeln!(io::stderr().lock(), "{line}");
 }
 
-/// A text with control characters escaped, except line ends and tabs: names of files and keys in it could move a
+/// Escapes control characters in a text, except line ends and tabs. Names of files and keys could otherwise move a
 /// terminal's cursor, change its colors or reverse the direction of its text.
 pub fn harmless(text: &str) -> Cow<'_, str> {
     if !text.contains(|c| is_harmful(c) && !matches!(c, '\n' | '\t')) {

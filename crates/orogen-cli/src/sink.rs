@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::interrupt::Stoppable;
 use crate::{interrupt, say};
 
-/// The output of a single file.
+/// The output for a single file.
 #[derive(Debug, Clone)]
 pub enum Sink {
     /// A file, written atomically.
@@ -19,7 +19,7 @@ pub enum Sink {
     Stdout,
 }
 
-/// The name of standard output and, as a recipe, of standard input.
+/// The name of standard output, and of standard input where a recipe is read.
 pub const DASH: &str = "-";
 
 /// Whether a path is a name of standard output. Names have no extension: see [`kind`].
@@ -34,7 +34,7 @@ mod stdout {
     use std::io;
     use std::path::Path;
 
-    /// Whether a path leads to the pipe or device that is standard output, such as a link to `/dev/stdout`.
+    /// Whether a path leads to the pipe or device of standard output, such as a link to `/dev/stdout`.
     pub fn is_behind(path: &Path) -> bool {
         let is_stream = |there: &Stat| {
             let kind = FileType::from_raw_mode(there.st_mode);
@@ -46,8 +46,8 @@ mod stdout {
         }
     }
 
-    /// Whether the process was started without standard output. In its place Rust's runtime opens the null device for
-    /// reading and writing, which shells open for writing only.
+    /// Whether the process was started without standard output. Rust's runtime then opens the null device for reading
+    /// and writing, whereas shells open it for writing only.
     pub fn is_closed() -> bool {
         let is_null = |ours: Stat| stat("/dev/null").is_ok_and(|null| null.st_rdev == ours.st_rdev);
         let is_opened_for_both = |flags: OFlags| flags & OFlags::RWMODE == OFlags::RDWR;
@@ -114,7 +114,8 @@ impl Sink {
         self.write(|out| picture.write_png(out, &[("Software", say::SOFTWARE)]))
     }
 
-    /// Prints a message about the output, on standard output unless that contains the file.
+    /// Prints a message about the output on standard output, unless `quiet` is set or standard output contains the
+    /// file.
     pub fn tell(&self, quiet: bool, words: &str) -> Result<(), Failure> {
         match self {
             Sink::File(_) if !quiet => say::out(words),
@@ -123,7 +124,7 @@ impl Sink {
     }
 }
 
-/// Standard output, and whether its pipe was closed, which errors of encoders do not always show.
+/// Standard output, and whether its pipe was closed; errors of encoders do not always show this.
 struct Piped {
     out: io::StdoutLock<'static>,
     broken: bool,
@@ -139,7 +140,7 @@ impl Write for Piped {
     }
 }
 
-/// Checks that a file is a PNG, or standard output; `what` names it in the message.
+/// Checks that the output is a PNG file or standard output; `what` names it in the message.
 pub fn check_png(out: &Path, what: &str) -> Result<(), Failure> {
     match is_stdout(out) || out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
         true => Ok(()),
@@ -150,8 +151,8 @@ pub fn check_png(out: &Path, what: &str) -> Result<(), Failure> {
     }
 }
 
-/// The kind of file for `--format`, otherwise for the extension of `out`, otherwise (on standard output) the first of
-/// `kinds`, which are pairs of a kind and its extension.
+/// The kind of file: from `--format`, otherwise from the extension of `out`, otherwise (on standard output) the first
+/// of `kinds`, which are pairs of a kind and its extension.
 ///
 /// # Errors
 /// If neither matches one of `kinds`, or they contradict each other; `what` names the output in messages, such as "a

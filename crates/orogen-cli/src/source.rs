@@ -47,7 +47,7 @@ impl Source {
         Ok(Source::Named(source))
     }
 
-    /// The file of heights, if it is one.
+    /// The file of heights, if the source is one.
     pub fn dem(&self) -> Option<&Path> {
         match self {
             Source::Named(RecipeSource::Dem(path)) => Some(path),
@@ -64,7 +64,7 @@ impl Source {
         files
     }
 
-    /// Reads the recipe with values for its parameters; the heights of a real place take at most the rest of `budget`.
+    /// Reads the recipe with values for its parameters. The heights of a real place take at most the rest of `budget`.
     pub fn read(&self, budget: &Budget, arguments: &Arguments) -> Result<Recipe, Failure> {
         let set = arguments.values();
         match self {
@@ -82,7 +82,7 @@ fn tell(path: &Path, note: &str) {
     say::once(&format!("note: {}: {note}", path.display()));
 }
 
-/// The recipe of heights that were read from a file. Prints their notes.
+/// The recipe for heights that were read from a file. Prints notes about them.
 pub fn of_dem(path: &Path, ground: PreparedDem) -> Recipe {
     ground.notes.iter().for_each(|note| tell(path, note));
     Recipe::from_dem(path, &Arc::new(ground))

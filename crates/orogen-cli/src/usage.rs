@@ -1,4 +1,4 @@
-//! Errors of the command line, and the texts that `--help` and `--version` ask for.
+//! Errors of the command line, and the texts of `--help` and `--version`.
 
 use std::io::Write;
 
@@ -8,7 +8,7 @@ use orogen::grid::words;
 use crate::failure::Failure;
 use crate::say;
 
-/// What clap returned in place of arguments: help is printed, anything else is a failure.
+/// Handles what clap returned instead of arguments: help is printed, anything else is a failure.
 pub fn answer(error: clap::Error) -> Result<(), Failure> {
     if error.use_stderr() {
         return Err(Failure::CommandLine(Box::new(sensible(error))));
@@ -26,14 +26,14 @@ pub fn report(error: &clap::Error) {
     }
 }
 
-/// The suggestions of clap, and what each is suggested for.
+/// Kinds of invalid words, each with the kind of clap's suggestion for it.
 const SUGGESTIONS: [(ContextKind, ContextKind); 3] = [
     (ContextKind::InvalidArg, ContextKind::SuggestedArg),
     (ContextKind::InvalidSubcommand, ContextKind::SuggestedSubcommand),
     (ContextKind::InvalidValue, ContextKind::SuggestedValue),
 ];
 
-/// The error without suggestions of words that only share some letters: clap suggests `--cache` for `--scale`.
+/// Removes suggestions that only share some letters with the word: clap suggests `--cache` for `--scale`.
 fn sensible(mut error: clap::Error) -> clap::Error {
     for (wrong, suggested) in SUGGESTIONS {
         let Some(ContextValue::String(word)) = error.get(wrong) else { continue };
@@ -48,7 +48,7 @@ fn sensible(mut error: clap::Error) -> clap::Error {
         if !near.is_empty() {
             error.insert(suggested, ContextValue::Strings(near));
         } else if error.remove(suggested).is_some() {
-            // It would list the suggestion as well.
+            // The usage would list the suggestion as well.
             error.remove(ContextKind::Usage);
         }
     }

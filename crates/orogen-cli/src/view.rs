@@ -1,6 +1,5 @@
-//! Which samples of which world: the options for seed, size, cell, window and georeference shared by all commands, and
-//! the window that they define. Apart from the seed, they only change which samples are taken; the world stays the
-//! same.
+//! Which samples of which world: the options for seed, size, cell, window and georeference that all commands share, and
+//! the window that they define. Apart from the seed, they only select samples and do not change the world.
 
 use std::path::{Path, PathBuf};
 
@@ -56,11 +55,11 @@ pub struct View {
     pub reads_part: bool,
 }
 
-/// The same where samples may also be counted.
+/// A view whose size can also be given in samples.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "World and window")]
 pub struct SizedView {
-    /// What it is a size of.
+    /// The view that the size belongs to.
     #[command(flatten)]
     pub view: View,
     /// Samples along the longer side, or along both (with the same aspect ratio), of the world or of the window
@@ -68,7 +67,7 @@ pub struct SizedView {
     pub size: Option<Size>,
 }
 
-/// Samples of a file of heights that are read around a window: as many as layers derived from heights usually need.
+/// Number of samples of a file of heights that are read around a window: enough for most layers derived from heights.
 const SURROUNDINGS: usize = 64;
 
 impl SizedView {
@@ -106,7 +105,7 @@ impl View {
         // Other names of standard output, such as /dev/stdout, cannot have a seed in them.
         let out = out.map(|out| if is_stdout(out) { Path::new(DASH) } else { out });
         Seeds::each(self.seed.as_ref(), out, |seed, out| {
-            // What was written to a stream cannot be written again.
+            // Output that was written to a stream cannot be written again.
             let reads_part = out.as_deref() != Some(Path::new(DASH));
             let view = View { seed, reads_part, ..self.clone() };
             match work(view.clone(), out.clone()) {
@@ -133,7 +132,7 @@ impl View {
         self.window.is_some() || self.bounds.is_some() || self.projwin.is_some()
     }
 
-    /// Reads a recipe with these options for its parameters and its world. Its memory counts in `budget`.
+    /// Reads a recipe with these options for its parameters and its world. Its memory counts towards `budget`.
     pub fn recipe(&self, source: &Source, budget: &Budget) -> Result<Recipe, Failure> {
         if let Some(path) = source.dem()
             && self.reads_part
@@ -151,7 +150,7 @@ impl View {
         Ok(self.placed(source.read(budget, &self.arguments)?))
     }
 
-    /// A recipe with these options for its world.
+    /// Applies these options to the world of a recipe.
     fn placed(&self, mut recipe: Recipe) -> Recipe {
         let world = &mut recipe.world;
         world.seed = self.seed.as_ref().map_or(world.seed, Seeds::first);
@@ -161,7 +160,7 @@ impl View {
     }
 
     /// The requested part of a file of heights with its surroundings, on the lattice of the file. `None` if it cannot
-    /// be told without `--size`.
+    /// be determined without `--size`.
     fn around(&self, recipe: &Recipe) -> Option<Window> {
         let lattice = recipe.world.cell;
         let part = self.samples(None).ok()?.part(recipe, self.cell.unwrap_or(lattice)).ok()??;
@@ -172,13 +171,13 @@ impl View {
         Some(Window { x, y, width, height, cell: lattice }.grown(SURROUNDINGS))
     }
 
-    /// Which samples these options select, of this size.
+    /// The samples that these options select, with this size.
     pub fn samples(&self, size: Option<Size>) -> Result<view::View, Failure> {
         let corners = self.projwin.as_deref().map(Bounds::of_corners).transpose().map_err(Failure::Usage)?;
         Ok(view::View { cell: self.cell, window: self.window, bounds: corners.or(self.bounds), size })
     }
 
-    /// The requested window; a note says if the world is shown with a larger cell.
+    /// The requested window. Prints a note if the world is shown with a larger cell.
     pub fn window(&self, world: &World) -> Result<Window, Failure> {
         sized(self, world, None)
     }

@@ -12,17 +12,19 @@ use crate::failure::Failure;
 use crate::report::report;
 use crate::{interrupt, say};
 
-/// Interval of checks. Content is compared instead of time stamps, so touching a file has no effect.
+/// Interval between checks. Content is compared instead of time stamps, so touching a file has no effect.
 const INTERVAL: Duration = Duration::from_millis(200);
 
-/// Time for which a changed file must stay the same before it is read: editors truncate files before they write them.
+/// Time for which a changed file must stay the same before it is read, because editors truncate files before they write
+/// them.
 const CALM: Duration = Duration::from_millis(50);
 
-/// Number of checks for which a missing file is not a change: some editors replace files by removing them first.
+/// Number of checks for which a missing file is not a change, because some editors replace files by removing them
+/// first.
 const PATIENCE: u32 = 5;
 
-/// Calls `make` now and after each change of the recipe at `path` or of one that it uses, forever; outdated work is
-/// cancelled. Failures are reported and watching continues, unless the output is closed.
+/// Calls `make` now and after each change of the recipe at `path` or of a recipe that it uses, forever. Outdated work
+/// is cancelled. Failures are reported and watching continues, unless the output is closed.
 pub fn watch(
     path: &Path,
     quiet: bool,
@@ -115,8 +117,8 @@ impl Seen {
         loop {
             let mut now = Seen::look(path);
             if now.0.len() == 1 {
-                // An invalid recipe does not tell which files it uses: keep those of the last valid one, where the
-                // error may be.
+                // An invalid recipe does not state which files it uses. The files of the last valid one are kept,
+                // because the error may be in one of them.
                 now = Seen::look_at(self.0.iter().map(|file| file.path.clone()));
             }
             *self = now;
@@ -168,7 +170,7 @@ mod tests {
         let mut seen = Seen::look(&top);
         assert_eq!(seen.0.len(), 2);
         assert!(!seen.changed());
-        // An error in the part, and its correction.
+        // An error in the used recipe, and its correction.
         part(99);
         assert!(seen.changed());
         seen.settle(&top);

@@ -52,7 +52,7 @@ fn blocks(args: &Args) -> Result<(), Failure> {
     made.map_err(|failure| interrupt::explain(failure, "nothing was written"))
 }
 
-/// The format: as named, otherwise by the extension.
+/// The format: by its name, otherwise by the extension.
 fn format(args: &Args) -> Result<BlockFormat, Failure> {
     match args.out.extension() {
         None if !is_stdout(&args.out) => Ok(args.format.unwrap_or(BlockFormat::Luanti)),
@@ -67,7 +67,7 @@ fn make(args: &Args, format: BlockFormat, progress: &Progress) -> Result<(), Fai
     let job = BlocksJob::new(format).with_options(&args.options.read()?)?;
     let Opened { mut recipe, budget, policy, .. } = args.run.read(&args.recipe, &args.samples.view)?;
     let view = BlocksJob::view(&args.samples.view.samples(args.samples.size)?, &recipe.world);
-    // The classes of a recipe without any depend on the cell of the map.
+    // The classes of a recipe without its own classes depend on the cell of the map.
     let window = view.window(&args.run.limits.open(recipe.clone(), &budget)?, |_| ())?;
     job.prepare(&mut recipe, window.cell)?;
     let world = args.run.limits.open(recipe, &budget)?;
@@ -76,7 +76,7 @@ fn make(args: &Args, format: BlockFormat, progress: &Progress) -> Result<(), Fai
         finite::tell(HEIGHT, made.finite)?;
         Ok(made)
     };
-    // Whether the output may be written is known before the blocks are made.
+    // Whether the output may be written is checked before the blocks are made.
     let made = if format == BlockFormat::Luanti {
         let folder = LuantiFolder::new(&args.out, &policy)?;
         let made = make()?;

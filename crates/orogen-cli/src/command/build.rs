@@ -39,7 +39,7 @@ pub struct Args {
 /// Runs the build.
 pub fn run(args: &Args) -> Result<(), Failure> {
     args.samples.each_output(&args.out, |mut samples, out| {
-        // A build is resumed by the content of its files, and is too large for parts of them.
+        // A build is resumed by the content of its input files, and is too large to read only parts of them.
         samples.view.reads_part = false;
         build(&Args { samples, out, ..args.clone() })
     })
@@ -82,7 +82,7 @@ fn build(args: &Args) -> Result<(), Failure> {
     if args.run.quiet { Ok(()) } else { say::out(&closing(args, &spec, &report, begun.elapsed().as_secs_f64())) }
 }
 
-/// Prints the requirements, and fails if they are not met.
+/// Prints the required memory and disk space, and fails if they are not available.
 fn needs(args: &Args, build: &Build, start: Start) -> Result<(), Failure> {
     let (disk, there) = build.disk();
     let free = disk::free_at(&args.out);

@@ -153,7 +153,7 @@ fn clear(args: &Clear) -> Result<(), Failure> {
     }
 }
 
-/// Numbers of solutions and tiles; tiles only if there are any.
+/// The numbers of solutions and tiles as text; tiles are only mentioned if there are any.
 fn counted(solutions: usize, tiles: usize) -> String {
     let solutions = count(solutions, "solution");
     if tiles == 0 { solutions } else { format!("{solutions} and {}", count(tiles, "tile")) }

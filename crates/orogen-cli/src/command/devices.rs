@@ -21,7 +21,7 @@ struct Row {
     driver: String,
     buffer_bytes: u64,
     workgroups: u32,
-    /// Why it cannot be used.
+    /// The reason why it cannot be used.
     refused: Option<String>,
 }
 
@@ -55,7 +55,7 @@ fn rows() -> Vec<Row> {
     Vec::new()
 }
 
-/// What is printed if there is nothing to list.
+/// The message if there is nothing to list.
 const NOTHING: &str = if cfg!(feature = "gpu") {
     "no graphics card: no driver for Vulkan, Metal or Direct3D 12 was found\nall commands use the processor\n"
 } else {

@@ -60,7 +60,7 @@ enum Format {
     Npy,
 }
 
-/// The checked drawing task.
+/// A checked drawing task.
 struct Task<'a> {
     draw: &'a DrawOptions,
     out: &'a Path,
@@ -77,8 +77,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         None => ("noise.png", [(Format::Png, "png"), (Format::Npy, "npy")]),
     };
     let out = args.out.as_deref().unwrap_or(Path::new(default));
-    // Noise has no position on the earth, so map formats do not apply.
-    // Frames may also be written in formats for animations.
+    // Noise has no position on Earth, so map formats do not apply. Frames may also be written in formats for
+    // animations.
     let frames = job.frames.filter(|_| out.extension().is_none_or(|extension| extension != "npy"));
     let target = frames.map(|_| AnimationTarget::of(out)).transpose().map_err(Failure::Usage)?;
     let format = if target.is_some() { Format::Png } else { kind(out, None, &kinds, "a noise is a")? };
@@ -108,7 +108,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 impl Task<'_> {
-    /// Checks that the file can hold what is drawn.
+    /// Checks that the file format can hold the drawing.
     fn check(&self) -> Result<(), Failure> {
         let NoiseJob { look, frames, volume, range, is_deep, .. } = &self.job;
         let wrong = match self.format {

@@ -91,10 +91,10 @@ fn render(args: &Args) -> Result<(), Failure> {
     outputs[0].tell(args.run.quiet, &format!("{}: {words}\n", args.out.display()))
 }
 
-/// The share of a frame's pixels from which a GIF's colors are taken.
+/// The share of a frame's pixels from which the colors of a GIF are chosen.
 const PREVIEW: f64 = 0.25;
 
-/// How many pictures are painted: those of an animation, and the parts of some for the colors of a GIF.
+/// Number of pictures to paint: those of an animation, and parts of some for the colors of a GIF.
 fn pictures(args: &Args, target: &AnimationTarget) -> f64 {
     match args.turntable {
         None => 1.0,
@@ -136,11 +136,11 @@ fn turntable(
     let [previewing, painting] = rendering.painting.parts([preview(target), f64::from(frames)]);
     let turn = |frame: u32| azimuth + 360.0 * f64::from(frame) / f64::from(frames);
     let sides = (0..frames).map(|frame| [turn(frame), elevation]);
-    // The closest distance at which all frames fit: a changing distance would make the land pulsate.
+    // The shortest distance at which all frames fit. A changing distance would make the land pulsate.
     let distance = distance.unwrap_or_else(|| scene.distance(sides, spec));
     let view = |frame: u32| Shot::Around { azimuth: turn(frame), elevation, distance: Some(distance) };
     let side = |frame: u32| scene.camera(&spec.with_view(view(frame)));
-    // Four small views suffice for the colors.
+    // Four small views suffice for choosing the colors.
     let sample = || {
         let small = size.map(|side| side.div_ceil(4));
         previewing.expect(4.0);

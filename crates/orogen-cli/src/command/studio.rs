@@ -22,18 +22,18 @@ pub struct Args {
     device: DeviceChoice,
 }
 
-/// The program with the window.
+/// The name of the studio's program.
 const PROGRAM: &str = "orogen-studio";
 
 /// Starts the studio, and waits until its window is closed.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    // A name that is neither a file nor a preset is an error here, where it was typed.
+    // A name that is neither a file nor a preset is reported here, where it was typed.
     if let Some(Source::Stdin) = args.recipe.as_deref().map(Source::find).transpose()? {
         return Err(Failure::Usage("the studio opens files and presets, not standard input; name a file".into()));
     }
     match Command::new(program()).arg("--device").arg(args.device.to_string()).args(&args.recipe).status() {
         Ok(status) if status.success() => Ok(()),
-        // It has said why.
+        // The studio has already reported its error.
         Ok(_) => Err(Failure::Told),
         Err(cause) if cause.kind() == io::ErrorKind::NotFound => Err(Error::new(
             ErrorKind::File,
@@ -47,7 +47,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// The program beside this one, otherwise that on the path.
+/// The studio's program in the folder of this program, otherwise on the search path.
 fn program() -> OsString {
     let name = format!("{PROGRAM}{}", std::env::consts::EXE_SUFFIX);
     let beside = std::env::current_exe().ok().map(|own| own.with_file_name(&name)).filter(|path| path.is_file());

@@ -52,7 +52,7 @@ fn make(args: &Args, progress: &Progress) -> Result<String, Failure> {
     let job = TilemapJob::with_options(&args.options.read()?)?;
     let policy = policy.protecting(&job.files);
     let view = TilemapJob::view(&args.samples.view.samples(args.samples.size)?);
-    // The classes of a recipe without any depend on the cell of the map.
+    // The classes of a recipe without its own classes depend on the cell of the map.
     let window = view.window(&args.run.limits.open(recipe.clone(), &budget)?, |_| ())?;
     let source_layer = if recipe.outputs().any(|name| name == CLASS) { CLASS } else { HEIGHT };
     job.prepare(&mut recipe, window.cell)?;

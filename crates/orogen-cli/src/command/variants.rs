@@ -52,7 +52,7 @@ pub struct Args {
     run: RunOptions,
 }
 
-/// Samples shown along a side of an unbounded world, at its own cell.
+/// Number of samples along a side of an unbounded world, at its own cell.
 const UNBOUNDED: f64 = 1024.0;
 
 /// A picture to make.
@@ -96,7 +96,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         held.push(memory);
     }
     if let Some(mut render) = job.render.clone() {
-        // One palette over the heights of all pictures.
+        // The same palette range for the heights of all pictures.
         render.range = contact::range(&variants).filter(|_| render.colors == Colors::Map);
         for (variant, one) in variants.iter_mut().zip(&asked) {
             let made = picture(args, &render, job.size, &source, one, &budget, &rendering.part(1.0));
@@ -125,12 +125,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     outputs[0].tell(args.run.quiet, &format!("{}: {words}\n", args.out.display()))
 }
 
-/// Number of frames that show this many pictures forward and back.
+/// Number of frames for showing this many pictures forward and back.
 fn frames(pictures: usize) -> u32 {
     (2 * pictures.saturating_sub(1)).max(1) as u32
 }
 
-/// Writes the animation, and describes it.
+/// Writes the animation, and returns its description.
 fn animate(
     args: &Args,
     sheet: &Sheet,
@@ -150,7 +150,7 @@ fn animate(
         )));
     }
     let pixels = (width * height) as u64;
-    // The frame that is painted, and its writer.
+    // The painted frame, and its writer.
     let _room = budget.reserve(3 * pixels + target.reserved(pixels))?;
     let painter = {
         let _fitting = budget.reserve(contact::fitting(variants))?;
@@ -161,7 +161,7 @@ fn animate(
         let k = k as usize;
         variants[k.min(frames as usize - k)].pixels(&painter)
     };
-    // Colors of a GIF: from both ends.
+    // Colors of a GIF: from both ends of the animation.
     let sample = || Ok([frame(0), frame(frames / 2)].concat());
     let notes = [("Software", say::SOFTWARE)];
     let picture = Picture::new(width, height, Pixel::Rgb8).with_notes(&notes);
@@ -240,7 +240,7 @@ fn make(
     Ok((Variant { label: asked.label.clone(), grid, picture: None }, held))
 }
 
-/// The window of the whole world, or of an unbounded world the part that other commands show.
+/// The window of the whole world; for an unbounded world, the part that other commands show by default.
 fn window(world: &World, samples: usize) -> Result<Window, Failure> {
     match world.recipe().world.size {
         Some(_) => Ok(world.window_fitting(samples)?),
@@ -252,7 +252,7 @@ fn window(world: &World, samples: usize) -> Result<Window, Failure> {
 fn words(args: &Args, options: &Options, recipe: &Recipe) -> String {
     let what = match &args.sweep {
         Some(Sweep { name, text, .. }) => format!(" --sweep {name}={text}"),
-        // Other recipes of this name may have another seed.
+        // Other recipes with this name may have another seed.
         None if options.has("seed") => String::new(),
         None => format!(" --seed {}", recipe.world.seed),
     };

@@ -11,11 +11,11 @@ use orogen::{Recipe, Result};
 /// The kind of a box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// A node that depends on one position.
+    /// A node whose samples depend on one position.
     Field,
-    /// A node that depends on a finite halo.
+    /// A node whose samples depend on a finite halo.
     Filter,
-    /// A node that depends on the whole world.
+    /// A node whose samples depend on the whole world.
     Solver,
     /// An output of the recipe.
     Output,
@@ -45,7 +45,7 @@ pub struct Block {
     pub name: String,
     /// The op; empty for an output.
     pub op: &'static str,
-    /// The lines below its name: inputs, then parameters that differ from their defaults.
+    /// The lines below the name: inputs, then parameters that differ from their defaults.
     pub rows: Vec<String>,
     /// Whether an output depends on it.
     pub used: bool,
@@ -60,7 +60,7 @@ pub struct Wire {
     pub layer: Option<&'static str>,
     /// The box that reads.
     pub to: usize,
-    /// The row at which it ends; `None` for an output, which has no rows.
+    /// The row at which the wire ends; `None` for an output, which has no rows.
     pub row: Option<usize>,
 }
 
@@ -136,7 +136,7 @@ impl Diagram {
             }
             diagram.blocks.push(Block { kind: Kind::Output, name: cut(name), op: "", rows, used: true });
         }
-        // A box comes after those that it reads, so one pass backwards from the outputs suffices.
+        // A box comes after the boxes that it reads, so one pass backwards from the outputs suffices.
         let mut wires: Vec<&Wire> = diagram.wires.iter().collect();
         wires.sort_by_key(|wire| std::cmp::Reverse(wire.to));
         for wire in wires {

@@ -28,7 +28,7 @@ pub fn text(diagram: &Diagram, title: &str) -> String {
     text + "}\n"
 }
 
-/// The box's name, op and parameters, without the inputs that wires show.
+/// The box's name, op and parameters, without the inputs, which wires show.
 fn label(block: &Block) -> String {
     let head = if block.op.is_empty() { block.kind.name() } else { block.op };
     let settings = block.rows.iter().filter(|row| row.contains(' ')).cloned();
@@ -36,7 +36,7 @@ fn label(block: &Block) -> String {
     quoted(&lines.join("\n"))
 }
 
-/// A quoted string of DOT.
+/// Quotes a string for DOT.
 fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n"))
 }

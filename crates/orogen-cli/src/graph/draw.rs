@@ -10,7 +10,7 @@ use orogen::output::sheet::{Point, Rect, Size};
 
 use super::diagram::{Block, Diagram, Kind};
 
-/// Margin of the page, and the room of heading and legend.
+/// Margin of the page, and room for heading and legend.
 const MARGIN: f32 = 8.0;
 const HEADING: f32 = 12.0;
 const FOOT: f32 = 9.0;
@@ -106,7 +106,7 @@ fn size(block: &Block, letters: &FontSet) -> Size {
     Size { width: (head.max(rows) + 2.0 * PAD).max(LEAST), height: HEAD + below }
 }
 
-/// A wire: horizontal past boxes, and between columns a curve with horizontal ends.
+/// The path of a wire: horizontal past boxes, and between columns a curve with horizontal ends.
 fn curve(way: &[[f32; 3]], Point { x, y }: Point) -> Vec<Point> {
     const STEPS: usize = 24;
     let mut line = Vec::new();
@@ -137,7 +137,7 @@ impl Page<'_> {
         self.letters.width(text, face, size)
     }
 
-    /// The offset of a layer's label from the previous one: several may leave one box.
+    /// The offset of a layer's label from the previous one, because several layers may be read from one box.
     fn lift(&self, diagram: &Diagram, from: usize, layer: &str) -> f32 {
         let mut names: Vec<&str> =
             diagram.wires.iter().filter(|wire| wire.from == from).filter_map(|wire| wire.layer).collect();

@@ -15,12 +15,12 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// Names and values, as the library takes them.
+    /// Names and values for the library.
     pub fn values(&self) -> Vec<(String, f64)> {
         self.set.iter().map(|Assignment(name, value)| (name.clone(), *value)).collect()
     }
 
-    /// The same with one more value.
+    /// The same values with one more.
     pub fn with(&self, more: Option<(String, f64)>) -> Arguments {
         let more = more.map(|(name, value)| Assignment(name, value));
         Arguments { set: self.set.iter().cloned().chain(more).collect() }

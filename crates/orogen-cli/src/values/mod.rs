@@ -1,4 +1,4 @@
-//! Values on the command line: each is parsed in one place, with its range and its message.
+//! Values on the command line: each kind is parsed in one place, with its range and its message.
 
 pub mod arguments;
 pub mod bytes;

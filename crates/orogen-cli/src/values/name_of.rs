@@ -1,4 +1,4 @@
-//! Values that are names of declared things: formats, engines, noises.
+//! Values that are names of declared items: formats, engines, noises.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use orogen::export::targets::target::EngineTarget;
@@ -6,7 +6,7 @@ use orogen::export::{Format, registry, targets};
 use orogen::jobs::{BlockFormat, SheetFormat};
 use orogen::noise::Basis;
 
-/// The parser of a value that is one of several names, with a line of help for each.
+/// A parser for a value that is one of several names, each with a line of help.
 fn one_of<T: Copy + Send + Sync + 'static>(
     all: impl IntoIterator<Item = (PossibleValue, T)>,
 ) -> impl TypedValueParser<Value = T> {

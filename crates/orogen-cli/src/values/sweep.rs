@@ -11,7 +11,7 @@ pub struct Sweep {
     pub name: String,
     /// The values, in order.
     pub values: Vec<f64>,
-    /// The values as they were given.
+    /// The values as given.
     pub text: String,
 }
 
@@ -40,7 +40,7 @@ impl FromStr for Sweep {
     }
 }
 
-/// Values at even distances, with both ends.
+/// Evenly spaced values, including both ends.
 fn spaced([first, last]: [f64; 2], count: u8) -> Vec<f64> {
     let steps = f64::from(count.max(2) - 1);
     // The last value is exactly the given one, without summation errors.

@@ -1,4 +1,4 @@
-//! Output paths that cannot be written, or only partly: an error message, and no partial files.
+//! Output paths that cannot be written, or only partly: there is an error message, and there are no partial files.
 
 use crate::harness::Folder;
 
@@ -50,7 +50,7 @@ mod full {
     use crate::harness::{Folder, Outcome, is_whole};
     use std::process::{Command, Stdio};
 
-    /// Runs the program with a file size limit of `blocks` of 512 bytes: writing then fails half way, as on a full
+    /// Runs the program with a file size limit of `blocks` of 512 bytes. Writing then fails half way, as on a full
     /// disk, but for any user and on any file system.
     fn limited(folder: &Folder, blocks: u32, arguments: &[&str]) -> Outcome {
         let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
@@ -90,7 +90,7 @@ mod full {
         }
     }
 
-    /// A full disk, if this user is allowed to mount.
+    /// Simulates a full disk, if this user is allowed to mount file systems.
     #[cfg(target_os = "linux")]
     #[test]
     fn a_full_disk_leaves_the_old_set() {

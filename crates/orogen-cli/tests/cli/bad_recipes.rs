@@ -2,14 +2,15 @@
 
 use crate::harness::{DEADLINE, Folder};
 
-/// The default head of the recipes.
+/// The common start of the recipes.
 const HEAD: &str = "orogen = 1\n[world]\nsize = [100, 100]\n";
 
 fn check(content: impl AsRef<[u8]>, expect: &str) {
     check_as("a.toml", content, expect);
 }
 
-/// Checks that `generate`, `export` and `explain` reject it with `expect`, in time, and leave the folder unchanged.
+/// Checks that `generate`, `export` and `explain` reject a recipe with `expect`, in time, and leave the folder
+/// unchanged.
 fn check_as(name: &str, content: impl AsRef<[u8]>, expect: &str) {
     let folder = Folder::new();
     folder.write(name, content);
@@ -150,7 +151,7 @@ fn a_file_that_is_not_there_is_told_at_its_line() {
     let told = folder.bad(&["generate", "a.toml"], 1, "error: a.toml:6:8: node `place`: cannot read none.tif: ");
     assert!(told.err.contains(" 6 | path = \"none.tif\"\n   |        ^^^^^^^^^^\n"), "{}", told.err);
     folder.bad(&["explain", "a.json"], 1, "error: a.json:1:");
-    // Also a file that is no image.
+    // Also a file that is not an image.
     folder.write("none.tif", "text");
     let told = folder.bad(&["generate", "a.toml"], 1, "error: a.toml:6:8: node `place`: ");
     assert!(told.err.contains("^^^^^^^^^^"), "{}", told.err);

@@ -28,7 +28,7 @@ fn a_small_world_has_a_block_for_each_cell() {
     let ([east, north, up], voxels) = vox(&file);
     assert_eq!([east, north], [60, 40]);
     assert!(up > 20 && voxels > 60 * 40 * 16, "{up} {voxels}");
-    // More levels below the ground are more blocks, and the same ones above.
+    // More levels below the ground give more blocks, and the same ones above.
     folder.good(&["blocks", "hills.toml", "--below", "20", "-o", "deep.vox", "-q"]);
     let (size, more) = vox(&folder.read("deep.vox"));
     assert_eq!((size, more), ([60, 40, up + 4], voxels + 4 * 60 * 40));

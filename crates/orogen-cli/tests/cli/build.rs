@@ -1,4 +1,4 @@
-//! `orogen build`: killed, interrupted, without disk space, with the same bytes in the end.
+//! `orogen build`: killed, interrupted, or without disk space, it has the same bytes in the end.
 
 use crate::harness::{Folder, Outcome, Running};
 use std::collections::BTreeMap;
@@ -119,7 +119,7 @@ fn kill_builds(kills: u32) {
         references.push((files(&folder.path(name)), begun.elapsed()));
     }
     let (mut killed, mut state) = (0, 88_172_645_463_325_252u64);
-    // A kill that comes too late for a build does not count. What each build must hold does not depend on that.
+    // A kill that comes too late for a build does not count. The required result of each build does not depend on that.
     for ((name, asked), (expect, usual)) in BUILDS.iter().zip(&references).cycle().take(4 * kills as usize) {
         let folder = Folder::with_small();
         // Killed repeatedly until it completes, on average at most once per build.
@@ -150,7 +150,7 @@ fn kill_builds(kills: u32) {
     }
 }
 
-/// A build that one thread takes a minute for.
+/// A build that takes one thread a minute.
 const SLOW: [&str; 9] = ["slow.toml", "--cell", "0.1", "--tile", "64", "--memory", "22MiB", "--threads", "1"];
 
 /// A folder with the recipe of [`SLOW`].
@@ -160,7 +160,7 @@ fn with_slow() -> Folder {
     folder
 }
 
-/// What each message names works.
+/// Options that messages suggest work.
 #[cfg(unix)]
 #[test]
 fn a_build_over_a_file_of_another_kind_can_be_resumed() {
@@ -208,7 +208,7 @@ fn ctrl_c_stops_cleanly() {
     }
 }
 
-/// File size limits: the system ends the process in the middle of a write.
+/// Sets file size limits: the system ends the process in the middle of a write.
 #[cfg(unix)]
 #[test]
 fn a_limit_on_files_leaves_a_build_to_go_on_with() {
@@ -233,7 +233,7 @@ fn two_builds_do_not_work_on_one_place() {
     }
     assert!(build.child.try_wait().unwrap().is_none(), "the first build still works");
     drop(build);
-    // The lock was released with the process that held it.
+    // The lock was released when its process ended.
     folder.bad(&arguments("a.zarr", &SLOW, &["-q"]), 1, "is an unfinished build; use --resume to continue it");
 }
 

@@ -141,7 +141,7 @@ fn a_graph_is_drawn_and_written_for_graphviz() {
     ] {
         assert!(dot.contains(expect), "{expect}: {dot}");
     }
-    // A name from a recipe cannot end a DOT string.
+    // A name from a recipe cannot terminate a DOT string.
     assert_eq!(dot.matches('"').count() % 2, 0);
 }
 

@@ -1,5 +1,5 @@
-//! Tables of all commands. Tests of requirements for every command iterate over them. A command that is in no table
-//! fails here.
+//! Tables of all commands. Tests of requirements for every command iterate over them. A command that is missing from
+//! all tables fails a test here.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use crate::harness::Folder;
 pub struct Writer {
     /// The arguments; the output path is last.
     pub arguments: &'static [&'static str],
-    /// The files it writes that contain user data.
+    /// The files that it writes and that contain user data.
     pub files: &'static [&'static str],
 }
 

@@ -53,13 +53,14 @@ fn a_window_of_a_file_of_heights_reads_its_blocks_alone() {
     let (all, part) = (npy(&folder.read("all.npy")), asked("a.tif", "part.npy", "height"));
     assert_eq!((part.width(), part.height()), (40, 30));
     assert!((0..30).all(|j| (0..40).all(|i| part[(i, j)] == all[(i + 300, j + 200)])));
-    // Layers of the surroundings, and of the whole drainage area, for which the rest of the file is read.
+    // Layers that read their surroundings, and layers of the whole drainage area, for which the rest of the file is
+    // read.
     for layer in ["slope", "filled"] {
         folder.good(&["export", "a.tif", "-o", "all.npy", "--layer", layer, "-q"]);
         let (all, part) = (npy(&folder.read("all.npy")), asked("a.tif", "part.npy", layer));
         assert!((0..30).all(|j| (0..40).all(|i| part[(i, j)] == all[(i + 300, j + 200)])), "{layer}");
     }
-    // The last blocks of the file are those of its south-east: without them the window is the same.
+    // The last blocks of the file are those of its south-east. Without them the window is the same.
     let bytes = folder.read("a.tif");
     folder.write("cut.tif", &bytes[..bytes.len() - 20_000]);
     assert_eq!(asked("cut.tif", "cut.npy", "height").data(), asked("a.tif", "part.npy", "height").data());
@@ -70,7 +71,7 @@ fn a_window_of_a_file_of_heights_reads_its_blocks_alone() {
         "it ends within",
     );
     folder.bad(&["export", "cut.tif", "-o", "b.npy", "--window", "30000,0,5,5"], 2, "is not inside the world");
-    // What is written to a stream cannot be begun again.
+    // Output that was written to a stream cannot be started again.
     let streamed = folder.run(&["export", "a.tif", "-o", "-", "--format", "npy", "--window", "300,200,40,30"]);
     assert_eq!(npy(&streamed.out).data(), asked("a.tif", "part.npy", "height").data());
 }
@@ -109,7 +110,7 @@ fn a_geotiff_is_the_same_on_any_number_of_threads() {
     assert_eq!(folder.names(""), ["a.tif", "b.TIFF", "small.toml"]);
 }
 
-/// The greatest difference of two exported arrays.
+/// The greatest difference between two exported arrays.
 fn off(folder: &Folder, a: &str, b: &str) -> f32 {
     let (a, b) = (npy(&folder.read(a)), npy(&folder.read(b)));
     assert_eq!((a.width(), a.height()), (b.width(), b.height()));

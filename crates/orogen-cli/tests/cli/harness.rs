@@ -1,4 +1,4 @@
-//! Temporary folders, and a way to run the program there.
+//! Temporary folders, and helpers for running the program in them.
 
 use std::fs;
 use std::io::{BufRead, BufReader};
@@ -31,7 +31,7 @@ height = "land"
 noise = "noise"
 "#;
 
-/// [`SMALL`] with noise that takes a hundred times as long for each sample.
+/// [`SMALL`] with noise that takes a hundred times as long per sample.
 pub fn slow() -> String {
     let fractal = |k| format!("[nodes.n{k}]\nop = \"fbm\"\nseed = {k}\nwavelength = 300\noctaves = 24\n");
     let fractals: String = (0..16).map(fractal).collect();
@@ -40,7 +40,7 @@ pub fn slow() -> String {
     SMALL.replace("[nodes.noise]\nop = \"fbm\"\nwavelength = 300\noctaves = 4\n", &noise)
 }
 
-/// Whether the tests write what they would compare: `OROGEN_BLESS=1`.
+/// Whether the tests write the expected values instead of comparing with them: `OROGEN_BLESS=1`.
 pub fn bless() -> bool {
     let value = std::env::var_os("OROGEN_BLESS");
     assert!(
@@ -73,7 +73,7 @@ impl Folder {
         fs::write(self.path(name), content).unwrap();
     }
 
-    /// Replaces a file at once: whoever reads it sees the old content or the new.
+    /// Replaces a file atomically: readers see either the old content or the new one.
     pub fn replace(&self, name: &str, content: impl AsRef<[u8]>) {
         let other = format!("{name}.new");
         self.write(&other, content);
@@ -134,10 +134,10 @@ impl Folder {
     }
 }
 
-/// Deadline of everything that a test waits for. It only ends a test that would hang, however busy the machine is.
+/// Deadline for everything that a test waits for. It only ends a test that would hang, on the busiest machine.
 pub const DEADLINE: Duration = Duration::from_secs(300);
 
-/// Waits until something is so.
+/// Waits until a condition is true.
 pub fn until(what: &str, mut is_so: impl FnMut() -> bool) {
     let begun = Instant::now();
     while !is_so() {
@@ -146,7 +146,7 @@ pub fn until(what: &str, mut is_so: impl FnMut() -> bool) {
     }
 }
 
-/// A command that runs, whose lines on standard error are read. It is killed when dropped.
+/// A running command whose lines on standard error are read. It is killed when dropped.
 pub struct Running {
     pub child: Child,
     lines: Receiver<String>,
@@ -194,7 +194,7 @@ impl Running {
         assert!(status.success());
     }
 
-    /// Waits until it ends. Returns its exit code, if it ended by itself, and the lines that were not waited for.
+    /// Waits until it ends. Returns its exit code, if it was not killed by a signal, and the remaining lines.
     pub fn ended(&mut self) -> (Option<i32>, Vec<String>) {
         let (until, mut lines) = (Instant::now() + DEADLINE, Vec::new());
         loop {
@@ -277,7 +277,7 @@ impl Picture {
     }
 }
 
-/// Returns whether `path` is a complete picture, array or JSON file, by its extension.
+/// Returns whether `path` is a complete picture, array or JSON file, depending on its extension.
 pub fn is_whole(path: &Path) -> bool {
     let bytes = fs::read(path).unwrap();
     match path.extension().and_then(|extension| extension.to_str()) {

@@ -1,10 +1,10 @@
-//! The jobs of docs/jobs.md, done with its commands.
+//! The jobs of docs/jobs.md, done with the commands given there.
 
 use crate::harness::Folder;
 
 const PAGE: &str = include_str!("../../../../docs/jobs.md");
 
-/// A test for each job, and one for their number.
+/// Generates a test for each job, and one for their number.
 macro_rules! jobs {
     ($($name:ident: $title:literal,)*) => {
         $(#[test]
@@ -29,12 +29,12 @@ jobs! {
     a_print: "print a mountain",
 }
 
-/// Writes the files of a job, runs its commands, and looks for what they should have written.
+/// Writes the files of a job, runs its commands, and checks that the expected files were written.
 fn do_job(title: &str) {
     let Some((_, job)) = PAGE.split_once(&format!("## {title}\n")) else { panic!("{title} is not on the page") };
     let job = job.split("\n## ").next().unwrap_or_default();
     let folder = Folder::new();
-    // The last name before a block is that of its file.
+    // The last name before a code block is the name of its file.
     let parts: Vec<&str> = job.split("\n```").collect();
     for pair in parts.chunks_exact(2) {
         let (Some(name), Some((_, content))) = (pair[0].split('`').nth_back(1), pair[1].split_once('\n')) else {

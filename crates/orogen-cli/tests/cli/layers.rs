@@ -1,4 +1,4 @@
-//! Layers of `orogen export` that follow from the heights.
+//! Layers of `orogen export` that are derived from the heights.
 
 use crate::harness::{Folder, SMALL, npy, png};
 use orogen::export::derived::layer::Nature;
@@ -134,7 +134,7 @@ fn layers_that_follow_from_the_heights_have_options_of_their_own() {
     folder.good(&["export", "small.toml", "-o", "layer.npy", "-q", "--layer", "insolation", "--day", "172"]);
     assert_eq!(npy(&folder.read("node.npy")).data(), npy(&folder.read("layer.npy")).data());
     let south = export("insolation", &["--season", "winter", "--latitude", "-45"]);
-    // Not everywhere: a steep north slope gets more of a low northern sun than of a high southern one.
+    // Not everywhere: a steep north slope receives more of a low northern sun than of a high southern one.
     assert!(south.data().iter().sum::<f32>() < june.data().iter().sum::<f32>());
     let few = export("height-above-drainage", &["--stream", "1e9"]);
     let many = export("height-above-drainage", &["--stream", "500"]);
@@ -192,7 +192,7 @@ fn the_light_of_a_hillshade_is_chosen() {
     };
     let half = 0.5f32.sqrt();
     for (args, expect) in [
-        // From the north-west at 45 degrees: half from the side.
+        // Light from the north-west at 45 degrees: half of it comes from the side.
         (&[][..], half * half * half + half * half),
         (&["--azimuth", "270"], 1.0),
         (&["--azimuth", "-90", "--altitude", "45"], 1.0),
@@ -205,7 +205,7 @@ fn the_light_of_a_hillshade_is_chosen() {
         let found = middle(args);
         assert!((found - expect).abs() < 1e-6, "{args:?}: {found}, not {expect}");
     }
-    // The light is that of the pictures for engines, too.
+    // Pictures for engines have the same light.
     let engine = |args: &[&str]| {
         let line = [
             "export",

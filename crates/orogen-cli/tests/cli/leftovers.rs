@@ -40,7 +40,7 @@ fn files_of_killed_commands_go_and_those_of_the_living_stay() {
         killed.kill().unwrap();
         killed.wait().unwrap();
         assert!(!files_of(&folder, &killed).is_empty(), "{arguments:?}: {:?}", folder.names(""));
-        // Another process is running while a third one writes.
+        // Another process is running while a third process writes.
         let mut living = busy(&folder, arguments);
         folder.good(&["export", "small.toml", "-o", "b.npy", "-q"]);
         assert!(files_of(&folder, &killed).is_empty(), "{arguments:?}: {:?}", folder.names(""));

@@ -103,7 +103,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 fn memory(writer: &Writer) -> bool {
     let folder = ready(writer);
     let help = folder.good(&[writer.arguments[0], "--help"]).text().to_string();
-    // A graph only reads the recipe: only the files of heights that it names take memory.
+    // A graph only reads the recipe; only the files of heights that the recipe names take memory.
     if !help.contains("--memory") || writer.arguments[0] == "graph" {
         return false;
     }
@@ -132,7 +132,7 @@ fn every_command_ends_within_seconds_of_an_interruption() {
     }
 }
 
-/// Interrupts a command that has done a part of its work. Returns the time until it ended; `None` for commands that are
+/// Interrupts a command that has done part of its work. Returns the time until it ended; `None` for commands that are
 /// not tested.
 fn interrupted(writer: &Writer) -> Option<Duration> {
     let mut arguments = with(writer, |argument| match argument {
@@ -160,14 +160,14 @@ fn interrupted(writer: &Writer) -> Option<Duration> {
         "noise" => arguments.iter_mut().filter(|argument| **argument == "3").for_each(|argument| *argument = "1000"),
         _ => {}
     }
-    // On a busy machine a command may have ended before the signal comes.
+    // On a busy machine a command may end before the signal arrives.
     (0..10).find_map(|_| interrupted_in_time(writer, &arguments)).or_else(|| panic!("{arguments:?} always ends first"))
 }
 
 /// `None` if the command had done all its work.
 fn interrupted_in_time(writer: &Writer, arguments: &[&str]) -> Option<Duration> {
     let folder = ready(writer);
-    // Pictures of `generate` are written to their end: only the work before can be interrupted.
+    // Writing the pictures of `generate` is not interrupted, only the work before it.
     let small = if arguments[0] == "generate" { slow() } else { SMALL.to_string() };
     folder.write("small.toml", small.replace("size = [640, 480]", LONG));
     let rivers = folder.text("rivers.toml");
@@ -278,7 +278,7 @@ const HOSTILE: [(&str, &[&str]); 8] = [
     ("--range", &["1,1", "nan,1"]),
     ("--camera", &["nan,0", "0,0,-1"]),
     ("--cell", &["1e300", "1e-300", "1e12", "1e-6", "0", "nan"]),
-    // All others.
+    // All other options.
     (
         "",
         &[
@@ -302,10 +302,10 @@ const HOSTILE: [(&str, &[&str]); 8] = [
     ),
 ];
 
-/// Options whose values are no numbers, or that say where and how the work is done.
+/// Options whose values are not numbers, or that only affect where and how the work is done.
 const NO_NUMBERS: [&str; 5] = ["--out", "--memory", "--cache", "--title", "--set"];
 
-/// The options with a value that a command lists, without those that its job, formats and layers declare.
+/// The options with a value that a command lists, except for those that its job, formats and layers declare.
 fn options(folder: &Folder, command: &str) -> Vec<String> {
     let help = folder.good(&[command, "--help"]).text().to_string();
     let named = |line: &str| {
@@ -320,7 +320,7 @@ fn options(folder: &Folder, command: &str) -> Vec<String> {
 }
 
 /// The options of jobs, formats and layers, each with the arguments of a command for every job, format or layer that
-/// has it.
+/// declares it.
 fn declared() -> Vec<(&'static OptionSpec, Vec<String>)> {
     let formats = registry::options().into_iter().map(|(spec, all)| {
         let arguments = all.iter().map(|format| format!("export small.toml -o option.{}", format.name));
@@ -353,7 +353,7 @@ fn declared() -> Vec<(&'static OptionSpec, Vec<String>)> {
     formats.chain(layers).chain(maps).chain(renders).chain(blocks).chain(tilemaps).collect()
 }
 
-/// The ends of what an option may be, and what is beyond them.
+/// The ends of the range of an option, and values beyond them.
 fn ends(kind: ValueKind) -> Vec<String> {
     let all = |values: &[&str]| values.iter().map(|value| value.to_string()).collect::<Vec<String>>();
     match kind {
@@ -388,7 +388,7 @@ fn ends(kind: ValueKind) -> Vec<String> {
     }
 }
 
-/// Commands with an unbounded world, or without one: what a window of a bounded one may be is known.
+/// Commands with an unbounded world or without a world: the valid windows of a bounded world are known.
 const UNBOUNDED: [&[&str]; 10] = [
     &["export", "endless", "-o", "e.tif"],
     &["map", "endless", "-o", "m.png"],
@@ -412,7 +412,7 @@ fn no_value_of_an_option_ends_a_command_without_a_sentence() {
                 continue;
             }
             for value in values {
-                // Few samples, so that what is allowed is done at once.
+                // Few samples, so that valid requests are done at once.
                 let few: &[&str] = if option == "--cell" { &["--window", "0,0,9,9"] } else { &[] };
                 answered(&folder, arguments, few, option, value);
             }
@@ -420,7 +420,7 @@ fn no_value_of_an_option_ends_a_command_without_a_sentence() {
     }
 }
 
-/// How long a command may work before it is interrupted, and how soon it then ends.
+/// How long a command may work before it is interrupted, and how soon it must then end.
 const PATIENCE: Duration = Duration::from_secs(2);
 const PROMPT: Duration = Duration::from_millis(300);
 
@@ -431,7 +431,7 @@ fn no_value_of_any_option_ends_a_command_without_a_sentence() {
     WRITERS.iter().for_each(|writer| prepare(&folder, writer));
     let writers = WRITERS.iter().map(|writer| writer.arguments);
     let mut broken = 0;
-    // How many did their work, were refused, and were interrupted.
+    // Numbers of runs that did their work, were refused, and were interrupted.
     let mut runs = [0; 3];
     let mut watch = |arguments: &[&str], option: &str, value: &str| {
         let ended = watched_with(&folder, arguments, option, value);
@@ -460,7 +460,7 @@ fn no_value_of_any_option_ends_a_command_without_a_sentence() {
     }
     for (spec, commands) in declared() {
         for command in commands {
-            // Without what is given for the option's own sake.
+            // Without the arguments that are given only for this option.
             let option = format!("--{}", spec.name);
             let words: Vec<&str> = command.split_whitespace().collect();
             let own = words.iter().position(|word| *word == option);
@@ -484,7 +484,7 @@ fn limits_named(said: &str) -> BTreeSet<String> {
     (0..words.len()).filter(is_limit).map(|at| words[at].to_string()).collect()
 }
 
-/// Runs a command with a value of an option under a memory limit of 64 MiB.
+/// Runs a command with a value of an option, under a memory limit of 64 MiB.
 fn watched_with(folder: &Folder, arguments: &[&str], option: &str, value: &str) -> Watched {
     let option = format!("{option}={value}");
     let mut all = [arguments, &[&option]].concat();
@@ -495,8 +495,8 @@ fn watched_with(folder: &Folder, arguments: &[&str], option: &str, value: &str) 
     watched(folder.command(&all), Some(PATIENCE))
 }
 
-/// What is wrong with such a run: it does its work or says why not, keeps its memory, and ends at once when it is
-/// interrupted.
+/// The fault of such a run, if any. A run must do its work or say why not, respect its memory limit, and end at once
+/// when it is interrupted.
 fn fault(ended: &Watched) -> Option<String> {
     const LIMIT: u64 = 64 << 20;
     let said = ended.said.trim_end();
@@ -512,7 +512,7 @@ fn fault(ended: &Watched) -> Option<String> {
     fault.or(peak).map(|fault| format!("{fault}: {said}"))
 }
 
-/// Removes what a run before has written.
+/// Removes the files that a previous run has written.
 fn remove_output(folder: &Folder, arguments: &[&str]) {
     if let Some(at) = arguments.iter().position(|argument| *argument == "-o") {
         let out = folder.path(arguments[at + 1]);
@@ -520,14 +520,14 @@ fn remove_output(folder: &Folder, arguments: &[&str]) {
     }
 }
 
-/// Runs a command with a value of an option: it does its work, or says in a sentence why not.
+/// Runs a command with a value of an option, and checks that it does its work, or reports why not.
 fn answered(folder: &Folder, arguments: &[&str], more: &[&str], option: &str, value: &str) {
     let option = format!("{option}={value}");
     let all = [arguments, more, &[&option], &["--memory", "64MiB"]].concat();
     remove_output(folder, arguments);
     let mut running = Running::start(folder, &all);
     let (code, said) = running.ended();
-    // 2 and 1 come with a sentence, anything else is an abort or a panic.
+    // Exit codes 2 and 1 come with a message; anything else is an abort or a panic.
     let is_told = said.iter().any(|line| line.starts_with("error: "));
     assert!(code == Some(0) || matches!(code, Some(1 | 2)) && is_told, "{all:?}: {code:?} {said:?}");
 }

@@ -2,7 +2,7 @@
 // Clippy detects test functions, but not that this whole file contains tests.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-// The parsers are no part of what the library offers, so they are compiled into the tests.
+// The parsers are not part of the library's public interface, so they are compiled into the tests.
 #[allow(dead_code, reason = "the tests use a part")]
 #[path = "../../src/failure.rs"]
 mod failure;

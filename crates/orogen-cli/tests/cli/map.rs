@@ -39,7 +39,7 @@ fn colors_by_name_and_from_files() {
             picture.data.chunks(3).filter(|pixel| pixel.iter().max().unwrap() - pixel.iter().min().unwrap() > 20);
         assert_eq!(colored.count() > 1000, palette == "viridis", "{palette}");
     }
-    // Only the colors of the stops, from 0 to 1.
+    // Only the colors of the stops, given from 0 to 1.
     folder.write("classes.txt", "0% 0.2 0.4 1\n50% 1 0 0.6\n100% 0.0 0.8 0\n");
     let line = |out: &str, more: &[&str]| {
         let plain =
@@ -176,7 +176,7 @@ fn biomes_color_a_map() {
     assert!(told.text().starts_with("a.png: biomes, "), "{}", told.text());
     folder.good(&["map", "biomes.toml", "-o", "b.png", "--size", "400", "--color", "biomes", "--threads", "1", "-q"]);
     assert_eq!(folder.read("a.png"), folder.read("b.png"));
-    // As a layer they have their own colors and names, unless other ones are chosen.
+    // As a layer, they have their own colors and names, unless others are chosen.
     let layer = |more: &[&str]| {
         let map = ["map", "biomes.toml", "-o", "l.svg", "--size", "400", "--layer", "cover", "--force", "-q"];
         folder.good(&[&map[..], more].concat());
@@ -352,7 +352,7 @@ fn a_grid_has_lines_at_round_coordinates() {
         let grid = text.split("stroke-width=\"0.150\"").nth(1).unwrap_or_default();
         grid.split("/>").next().unwrap_or_default().matches('M').count()
     };
-    // 9 lines from west to east and 7 from north to south, with those at both ends of the first.
+    // 9 lines from west to east and 7 from north to south, including the lines at both ends.
     assert_eq!(lines("a.svg", &["--grid"]), 9 + 7);
     assert_eq!(lines("b.svg", &["--grid", "1000"]), 5 + 4);
     assert_eq!(lines("c.svg", &[]), 0);

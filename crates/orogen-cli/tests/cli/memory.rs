@@ -1,7 +1,7 @@
-//! Peak memory of every command compared with `--memory`. The whole process counts; the system reports its peak.
+//! Peak memory of every command compared with `--memory`. The whole process counts; its peak comes from the system.
 //!
-//! The table covers all formats, derived layers, engines and build forms that the library lists, and a command without
-//! a row fails the test, so new ones are included automatically. The long test measures 4096 x 4096 samples at three
+//! The table covers all formats, derived layers, engines and build forms that the library lists. A command without a
+//! row fails the test, so new ones are included automatically. The long test measures 4096 x 4096 samples at three
 //! limits:
 //!
 //!     cargo test -p orogen-cli --test cli memory -- --ignored --nocapture
@@ -17,11 +17,11 @@ use orogen::export::targets::list as targets;
 
 use crate::harness::Folder;
 
-/// The maximum peak as a multiple of the limit.
+/// The maximum peak memory as a multiple of the limit.
 #[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "the peak of a process is read from /proc"))]
 pub const MOST: f64 = 1.1;
 
-/// Commands that only hold a text or a page of fixed size, and have no `--memory`.
+/// Commands that only hold a text or a page of fixed size in memory, and have no `--memory`.
 const SMALL: [&str; 10] =
     ["cache", "devices", "presets", "new", "ops", "palettes", "schema", "studio", "completions", "help"];
 
@@ -35,7 +35,7 @@ fn recipe(side: usize, last: &str) -> String {
     )
 }
 
-/// All commands that need memory, as arguments that `--memory` can follow.
+/// All commands that need memory, as arguments to which `--memory` can be appended.
 fn rows(side: usize) -> Vec<Vec<String>> {
     let mut rows: Vec<String> = vec![
         "explain land.toml".into(),
@@ -116,23 +116,23 @@ fn measured(command: Command) -> (i32, String, u64) {
 
 /// A command that has ended.
 pub struct Watched {
-    /// Its exit code; none if a signal ended it.
+    /// The exit code; `None` if a signal ended it.
     pub code: Option<i32>,
-    /// Its standard error.
+    /// The standard error output.
     pub said: String,
-    /// Its peak memory in bytes.
+    /// The peak memory in bytes.
     pub peak: u64,
-    /// The time from the interruption to its end, if it was interrupted.
+    /// The time from the interruption to the end, if it was interrupted.
     pub late: Option<Duration>,
 }
 
-/// Runs a command to its end. It is interrupted once if it takes longer than `patience`.
+/// Runs a command until it ends. It is interrupted once if it takes longer than `patience`.
 pub fn watched(mut command: Command, patience: Option<Duration>) -> Watched {
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     let (status, mut peak) = (format!("/proc/{}/status", child.id()), 0);
     let (begun, mut asked) = (Instant::now(), None);
     let code = loop {
-        // The system keeps the peak, so only the growth after the last reading is missed.
+        // The system keeps the peak, so only growth after the last reading is missed.
         let text = std::fs::read_to_string(&status).unwrap_or_default();
         let most = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
         let most = most.and_then(|most| most.trim().trim_end_matches(" kB").parse::<u64>().ok());
@@ -207,7 +207,7 @@ fn measure_every(side: usize, limits: &[u32]) {
     assert!(worst.is_empty(), "{}", worst.join("\n"));
 }
 
-/// What the allocator keeps for each thread counts, too.
+/// Memory that the allocator keeps for each thread also counts.
 #[test]
 #[cfg(target_os = "linux")]
 fn bands_of_many_columns_keep_their_memory() {
@@ -323,7 +323,7 @@ fn what_does_not_fit_is_refused_before_it_takes_memory() {
         assert!(ended == code && said.contains(expect), "{arguments:?}: {ended} {said}");
         assert!(peak < 70 << 20, "{arguments:?}: {peak}");
     }
-    // The distance reaches far beyond the world, where there is nothing to keep away from.
+    // The distance reaches far beyond the world, where there are no objects to keep away from.
     let sparse = ["export", "sparse.toml", "--layer", "scatter", "-o", "a.csv", "-q"];
     let (ended, said, peak) = measured(folder.command(&sparse));
     assert!(ended == 0 && peak < 400 << 20, "{said}: {peak}");

@@ -16,7 +16,7 @@ fn samples(noise: &Fractal, width: u32, height: u32, depth: Option<f64>) -> Vec<
     value
 }
 
-/// The f32 values at the end of an array file, and its shape in the header.
+/// The f32 values at the end of an array file, and the shape in its header.
 fn array(bytes: &[u8], count: usize) -> (Vec<f32>, String) {
     let (header, data) = bytes.split_at(bytes.len() - count * 4);
     let header = String::from_utf8_lossy(header).into_owned();
@@ -179,7 +179,7 @@ fn an_animation_has_its_frames_and_comes_back() {
         .collect();
     assert_eq!(frames[0], png(&folder.read("first.png")).data);
     assert!(frames[1] != frames[0] && frames[2] != frames[1] && frames[3] != frames[2]);
-    // The animation goes there and back, except for the rounding of the cosine.
+    // The animation goes forward and back, except for the rounding of the cosine.
     let far = frames[1].iter().zip(&frames[5]).map(|(a, b)| a.abs_diff(*b)).max();
     assert!(far <= Some(1), "{far:?}");
 }
@@ -295,7 +295,7 @@ fn tileable_animations_blocks_slopes_and_materials_close() {
             assert!((f32::from(data[k]) - (value + 1.0) * 127.5).abs() <= 0.501, "{frame} {k}");
         }
     }
-    // Seams of textures made from the noise are no steeper than the inside.
+    // Seams of textures made from the noise are not steeper than the interior.
     for more in [&["--gradient"][..], &["--texture", "marble"], &["--texture", "wood"], &["--texture", "clouds"]] {
         let options = ["--size", "96", "--wavelength", "32", "--tileable", "-q", "-o", "b.png"];
         folder.good(&[&["noise", "perlin"], more, &options[..]].concat());

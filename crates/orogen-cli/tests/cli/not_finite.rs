@@ -1,5 +1,5 @@
-//! Heights that are NaN or infinite: an error if none is finite, a warning if some are not, in every command that makes
-//! heights.
+//! Heights that are NaN or infinite: in every command that makes heights, there is an error if none is finite, and a
+//! warning if some are not.
 
 use crate::commands::{WRITERS, Writer, prepare, workplace};
 use crate::harness::Folder;

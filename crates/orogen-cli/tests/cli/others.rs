@@ -192,7 +192,7 @@ fn fit_writes_a_recipe_that_holds_nothing_of_the_place() {
     }
     let recipe = folder.text("like.toml");
     assert!(!recipe.contains("\"dem\"") && !recipe.contains("place.tif") && recipe.len() < 6000, "{recipe}");
-    // The same search has the same result, with any number of threads.
+    // The same search gives the same result with any number of threads.
     let json = folder.good(&[&fit[..], &["-o", "again.toml", "--threads", "1", "--json"]].concat()).text().to_string();
     assert_eq!(recipe, folder.text("again.toml"));
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();

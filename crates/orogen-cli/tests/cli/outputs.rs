@@ -1,4 +1,4 @@
-//! Files that exist before a command writes: inputs, user files, files of other kinds, its own earlier output.
+//! Files that exist before a command writes: inputs, user files, files of other kinds, and its own earlier output.
 
 use std::fs;
 
@@ -8,13 +8,13 @@ use crate::harness::{Folder, SMALL, share};
 /// Options to overwrite nothing or everything.
 const FLAGS: [&str; 2] = ["--no-clobber", "--force"];
 
-/// The arguments with additional ones.
+/// The arguments of a command with additional ones.
 fn with<'a>(writer: &Writer, more: &[&'a str]) -> Vec<&'a str> {
     let asked = writer.arguments.iter().copied().filter(|argument| !FLAGS.contains(argument));
     asked.chain(more.iter().copied()).collect()
 }
 
-/// The options to write again over a build.
+/// The options for writing over an existing build.
 fn again(writer: &Writer) -> &'static [&'static str] {
     if writer.arguments[0] == "build" { &["--force"] } else { &[] }
 }
@@ -35,7 +35,7 @@ fn a_run_replaces_its_own_output_and_nothing_else() {
         // --no-clobber stops the command in every case.
         let kept = folder.run(&with(writer, &["-n"]));
         assert_eq!(kept.code, 1, "{name}: {}", kept.err);
-        // A user's file is kept, in place of any of the output files.
+        // A user's file at the path of any of the outputs is kept.
         for (file, own) in writer.files.iter().zip(&first) {
             folder.write(file, "My notes on the walk to the lake.\n");
             let refused = folder.run(&with(writer, &[]));
@@ -86,7 +86,7 @@ fn no_command_writes_over_what_it_reads() {
         "orogen = 1\n[world]\nsize = [600, 400]\n[nodes.a]\nop = \"dem\"\npath = \"dem.tif\"\n[nodes.b]\n\
          op = \"stream-power\"\nsource = \"a\"\nsteps = 2\n[outputs]\nheight = \"b\"\n",
     );
-    // Every path of the same file.
+    // All paths of the same file.
     fs::hard_link(folder.path("dem.tif"), folder.path("hard.tif")).unwrap();
     #[cfg(unix)]
     std::os::unix::fs::symlink("dem.tif", folder.path("soft.tif")).unwrap();
@@ -200,7 +200,7 @@ fn pipes_and_devices_are_written_through() {
     }
 }
 
-/// The output of a shell's line, in which `$0` is the program.
+/// The output of a shell command line in which `$0` is the program.
 #[cfg(target_os = "linux")]
 fn shell(folder: &Folder, line: &str) -> std::process::Output {
     let mut shell = std::process::Command::new("sh");

@@ -1,4 +1,4 @@
-//! `--set`: on every command that takes a recipe.
+//! `--set`, for every command that takes a recipe.
 
 use crate::commands::{WRITERS, prepare, workplace};
 use crate::harness::{Folder, png};
@@ -56,7 +56,7 @@ fn variants_on_one_sheet() {
     assert_eq!(size("seeds.png")[1], size("sweep.png")[1]);
     folder.good(&["variants", "a.toml", "--seeds", "4", "--size", "96", "-o", "again.png", "-q", "--threads", "1"]);
     assert_eq!(std::fs::read(folder.path("seeds.png")).unwrap(), std::fs::read(folder.path("again.png")).unwrap());
-    // The same values as a list; a palette over the heights of all pictures, in the plane and in space.
+    // The same values as a list. The palette covers the heights of all pictures, in maps and in renders.
     let draw = |more: &[&str]| {
         folder.good(&[&["variants", "a.toml", "--size", "96", "-o", "x.png", "--force", "-q"], more].concat());
         png(&folder.read("x.png"))
@@ -73,7 +73,7 @@ fn variants_on_one_sheet() {
     };
     for more in [&[][..], &["--render"], &["--render", "--camera", "120,40"]] {
         let [red, blue] = colored(&draw(&[&palette[..], more].concat()));
-        // Low land fills the first picture, and a part of the second.
+        // Low land fills the first picture, and part of the second.
         assert!(red > blue && blue > 200, "{more:?}: {red} red, {blue} blue");
     }
     assert_ne!(
@@ -105,7 +105,7 @@ fn variants_as_an_animation() {
     let frames: Vec<Vec<u8>> = (0..4).map(|k| png(&folder.read(&format!("frame-{k}.png"))).data).collect();
     assert!(frames[1] == frames[3] && frames[0] != frames[1] && frames[1] != frames[2] && frames[0] != frames[2]);
     assert!(!folder.path("frame-4.png").exists());
-    // The same pixels in one file, with the duration of its frames (`acTL` tells their number).
+    // The same pixels in one file, with the duration of its frames (`acTL` contains their number).
     draw(&["-o", "moving.png", "--delay", "70"]);
     let moving = folder.read("moving.png");
     assert_eq!(png(&moving).data, frames[0]);

@@ -1,5 +1,5 @@
-//! Values of the command line over generated texts: what is written as a value is read as that value, and any other
-//! text is refused. The cases are the same in every run.
+//! Values of the command line over generated texts: valid texts are parsed to the intended value, and other texts are
+//! refused. The cases are the same in every run.
 
 use crate::values::bytes::Bytes;
 use crate::values::number;
@@ -28,14 +28,14 @@ fn declared() -> impl Iterator<Item = &'static OptionSpec> {
     MapJob::OPTIONS.iter().chain(RenderJob::OPTIONS).chain(NoiseJob::OPTIONS)
 }
 
-/// An option with this value, if it can have it.
+/// The options with this value; `None` if it is not valid.
 fn given(name: &str, text: &str) -> Option<Options> {
     let mut options = Options::default();
     options.give(declared().find(|spec| spec.name == name)?, text).ok()?;
     Some(options)
 }
 
-/// Finite numbers, as people and programs write them.
+/// Finite numbers, in the notations of people and programs.
 fn number() -> impl Strategy<Value = (f64, String)> {
     let plain = any::<f64>().prop_filter("finite", |number| number.is_finite());
     (prop_oneof![plain, -1e6..1e6f64], any::<bool>(), " {0,2}").prop_map(|(number, exponent, blanks)| {
@@ -155,7 +155,7 @@ fn papers_are_read_in_millimetres() {
     });
 }
 
-/// Any text is a value or a message, and a message is a sentence about it.
+/// Any text gives a value or a message about the text.
 #[test]
 fn other_texts_are_refused_with_a_message() {
     check(3000, "[-+0-9.,:;xX× a-zA-Zé%=#\u{0}]{0,16}", |text| {

@@ -110,7 +110,7 @@ fn a_map_sheet_lies_on_its_map() {
     assert_eq!(folder.names(""), ["a.pgw", "a.png", "a.png.aux.xml", "a.prj"]);
     let numbers: Vec<f64> = folder.text("a.pgw").lines().map(|line| line.parse().unwrap()).collect();
     let [across, 0.0, 0.0, down, east, north] = numbers[..] else { panic!("{numbers:?}") };
-    // The first and the last sample are at the margins, which have the same width on both sides.
+    // The first and the last sample are at the margins, which are equally wide on both sides.
     let size = image_size(&folder.read("a.png"));
     let middle = [east + across * (size[0] - 1.0) / 2.0, north + down * (size[1] - 1.0) / 2.0];
     assert!((middle[0] - (500_015.0 + 18.0 * 30.0)).abs() < across, "{middle:?}");
@@ -139,7 +139,7 @@ fn bands_tiles_and_meshes() {
     assert!(folder.read("again.npy") == folder.read("a.npy"));
     for name in ["tiles", "tiles.vrt"] {
         let said = folder.good(&["export", &corpus(name), "-o", "t.asc"]);
-        // A gap of a .vrt without a nodata value is 0, as in GDAL.
+        // A gap of a .vrt without a nodata value has a height of 0, as in GDAL.
         assert_eq!(said.err.contains("without height"), name == "tiles", "{}", said.err);
         assert!(folder.text("t.asc").starts_with("ncols 37\nnrows 23\nxllcenter 500015\nyllcenter 5199325\n"));
         let budget = folder.run(&["export", &corpus(name), "-o", "t.npy", "-q", "--memory", "64MiB"]);

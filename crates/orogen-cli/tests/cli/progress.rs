@@ -1,4 +1,4 @@
-//! Progress for other programs, and the files of a cancelled run.
+//! Progress for other programs, and files after a cancelled run.
 
 use crate::harness::{Folder, share};
 

@@ -88,7 +88,7 @@ fn a_refined_place_lies_where_it_was() {
     let head = |name: &str| folder.text(name).lines().take(5).map(String::from).collect::<Vec<_>>();
     assert_eq!(head("fine.asc"), head("same.asc"));
     assert_eq!(folder.text("fine.prj"), folder.text("same.prj"));
-    // Parts have the same heights.
+    // Windows have the same heights as the whole.
     folder.good(&["refine", "place.tif", "--cell", "15", "-o", "whole.npy", "-q"]);
     let part = ["--window", "33,50,40,20"];
     folder.good(&[&["refine", "place.tif", "--cell", "15", "-o", "part.npy", "-q"], &part[..]].concat());

@@ -51,7 +51,7 @@ fn objects_are_points_in_every_format_of_features() {
             _ => assert!(kind == "tree" && (0.5..=1.5).contains(size) && *z > 0.0, "{kind} {size} {z}"),
         }
     }
-    // The same bytes again on one thread, and every object once in windows side by side.
+    // The same bytes again on one thread, and every object exactly once in adjacent windows.
     folder.good(&["export", "land.toml", "-o", "again.csv", "--layer", "scatter", "--threads", "1", "-q"]);
     assert_eq!(folder.text("all.csv"), folder.text("again.csv"));
     let mut parts = Vec::new();
@@ -155,7 +155,7 @@ fn what_cannot_be_is_refused() {
     }
 }
 
-/// The trees of a Unity file as the lines of a table, on a terrain of this size whose south-west corner is there; and
+/// The trees of a Unity file as the lines of a table, for a terrain with this length and this south-west corner; and
 /// the lowest and the highest height.
 fn trees(folder: &Folder, name: &str, length: f64, corner: [f64; 2]) -> (Vec<Line>, [f64; 2]) {
     let file = folder.json(name);
@@ -192,7 +192,7 @@ fn unity_gets_trees_that_stand_on_its_terrain() {
             assert!(a.3 == b.3 && off.iter().all(|off| off.abs() < 1e-3), "{a:?} {b:?}");
         }
     };
-    // The table has objects up to a cell beyond the last samples.
+    // The table includes objects up to one cell beyond the last samples.
     let within = |name: &str| {
         let mut all = lines(&folder, name);
         all.retain(|(x, y, ..)| *x < 480.0 && *y > -480.0);
@@ -209,7 +209,7 @@ fn unity_gets_trees_that_stand_on_its_terrain() {
     let houses = found.iter().filter(|tree| tree.3 == "house").count();
     assert!(said.contains(&format!("{houses} objects of house (prototype 0), ")), "{said}");
     assert!(said.contains("TerrainData.treePrototypes"), "{said}");
-    // Heights are those of the terrain's levels around a tree, to half a step.
+    // Heights match the terrain's levels around a tree within half a step.
     let about = folder.json("u.json");
     assert!(
         (about["low"].as_f64().unwrap() - low).abs() < 1e-4 && (about["high"].as_f64().unwrap() - high).abs() < 1e-4
@@ -224,7 +224,7 @@ fn unity_gets_trees_that_stand_on_its_terrain() {
             [corners.iter().copied().fold(65535.0, f64::min), corners.iter().copied().fold(0.0, f64::max)];
         assert!((least - 0.6..=greatest + 0.6).contains(&level), "{level} {corners:?}");
     }
-    // Tiles have one scale and each object once.
+    // Tiles have one scale and contain each object once.
     export("export land.toml -o t.r16 --target unity --size 33 --cell 7.5 --tiles 2x2 -q");
     export("export land.toml -o t_trees.json --target unity --size 33 --cell 7.5 --tiles 2x2 --layer scatter -q");
     export("export land.toml -o fine.csv --layer scatter --window 0,0,65,65 --cell 7.5 -q");
@@ -245,7 +245,7 @@ fn unity_gets_trees_that_stand_on_its_terrain() {
         assert_eq!(same.len(), 1, "{one:?}");
         alike(&[same[0].clone()], std::slice::from_ref(one));
     }
-    // Without an engine the terrain is the window. Objects for Godot are those of the same terrain, too.
+    // Without an engine, the terrain is the window. Objects for Godot are on the same terrain.
     export("export land.toml -o plain.json --layer scatter --window 0,0,33,33 --cell 15 -q");
     assert_eq!(folder.text("plain.json"), folder.text("trees.json"));
     export("export land.toml -o g.tres --target hterrain --size 65 --layer scatter -q");

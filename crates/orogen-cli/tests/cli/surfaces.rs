@@ -1,4 +1,4 @@
-//! Surfaces: what covers the ground.
+//! Surfaces that cover the ground.
 
 use crate::harness::{Folder, png};
 
@@ -148,8 +148,8 @@ fn a_preview_shows_what_weights_mean() {
     let preview = folder.read("w_preview.png");
     let picture = png(&preview);
     assert_eq!((picture.width, picture.data.len()), (100, 3 * 100 * 64));
-    // The slope is even, so all of a surface has one shade of its color: that of a map, which is lighter than the
-    // albedo.
+    // The slope is uniform, so each surface has a single shade of its color: the shade of a map, which is lighter than
+    // the albedo.
     let pixel = |i: usize| [0, 1, 2].map(|c| picture.data[3 * (20 * 100 + i) + c]);
     let shaded = |color: [u8; 3], i: usize| {
         let light = color.map(orogen::io::palette::color::decode);
@@ -161,17 +161,18 @@ fn a_preview_shows_what_weights_mean() {
     }
     assert!(rock.iter().all(|factor| (1.2..2.2).contains(factor)), "{rock:?}");
     assert_ne!(pixel(80), pixel(45));
-    // Below the sea it is bluer than the sand above it.
+    // The ground below the sea is bluer than the sand above it.
     let blue = |[red, _, blue]: [u8; 3]| i32::from(blue) - i32::from(red);
     assert!(blue(pixel(2)) > blue(pixel(20)) + 40, "{:?} {:?}", pixel(2), pixel(20));
-    // The weights are the same without it, and the picture with other layouts, threads and order of rows.
+    // The weights are the same without the preview. The preview is the same with other layouts, threads and order of
+    // rows.
     folder.good(&["export", "a.toml", "-o", "plain.png", "--layer", "splat", "-q"]);
     assert_eq!(folder.read("plain.png"), folder.read("w.png"));
     let line =
         ["export", "a.toml", "-o", "v.png", "--layer", "splat", "--preview", "--threads", "1", "--first-row", "south"];
     folder.good(&[&line[..], &["--weights", "layers", "-q"]].concat());
     assert_eq!(png(&folder.read("v_preview.png")).data, picture.data);
-    // Engines have it beside each tile, over the same pixels.
+    // Exports for engines include it with each tile, over the same pixels.
     let engine =
         ["export", "a.toml", "-o", "u.png", "--layer", "splat", "--target", "unity", "--size", "33", "--preview"];
     folder.good(&[&engine[..], &["--tiles", "2x1", "-q"]].concat());

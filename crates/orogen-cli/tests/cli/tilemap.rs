@@ -99,7 +99,7 @@ fn another_seed_is_another_map_of_the_same_look() {
     assert_eq!(folder.read("map-1/tiles.png"), folder.read("map-2/tiles.png"));
 }
 
-/// Grass with sand at its lower end, and exactly a third of water, in another order than that of the tileset.
+/// Grass with sand at its lower end, and exactly a third of water, in a different order than in the tileset.
 const SHARES: &str = r#"
 [[class]]
 name = "grass"
@@ -170,7 +170,7 @@ fn a_map_that_was_edited_is_kept() {
     let arguments = ["tilemap", "small.toml", "--size", "32x24", "-o", "map", "-q"];
     folder.good(&arguments);
     folder.good(&arguments);
-    // An editor writes the file anew, without the comment at its beginning.
+    // An editor writes the file again, without the comment at its beginning.
     let edited = folder.text("map/map.tmx");
     let edited: String = edited.lines().filter(|line| !line.contains("<!--")).map(|line| format!("{line}\n")).collect();
     folder.write("map/map.tmx", &edited);
@@ -181,7 +181,7 @@ fn a_map_that_was_edited_is_kept() {
 #[test]
 fn tilesets_from_files_are_used_and_kept() {
     let folder = Folder::new();
-    // Single cells of land, for which the file has no tile: no wang set can have one.
+    // Single cells of land, for which the file has no tile, because no wang set can have one.
     folder.write("land.toml", CLASSES.replace("spots < 0.9", "spots > 0.9"));
     let arguments = |tileset: &'static str, out: &'static str| {
         ["tilemap", "land.toml", "--cell", "10", "--tileset", tileset, "-o", out]
@@ -215,7 +215,7 @@ fn infinite_maps_have_chunks_at_the_cells_of_the_world() {
         let layers = map["layers"].as_array().unwrap();
         layers.iter().find(|layer| layer["name"] == "water").unwrap().clone()
     };
-    // Readers such as Phaser's make room for what lies between the start of a layer and its end.
+    // Readers such as Phaser's allocate space from the start of a layer to its end.
     for (key, value) in [("startx", 0), ("starty", 0), ("width", 32), ("height", 16)] {
         assert_eq!(water(&part)[key], value, "{key}");
     }

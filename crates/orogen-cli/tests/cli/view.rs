@@ -1,4 +1,4 @@
-//! The common options that select samples and worlds.
+//! The common options for selecting samples and worlds.
 
 use crate::harness::{Folder, npy};
 
@@ -15,7 +15,7 @@ fn export_in_a_size_of_its_own() {
         2,
         "the nearest sizes that do are 30x23 and 40x30",
     );
-    // The size of an engine is the length of one side.
+    // The size for an engine is the length of one side.
     folder.bad(
         &["export", "small.toml", "-o", "c.png", "--size", "33x65", "--target", "unity"],
         2,
@@ -83,8 +83,8 @@ fn a_world_on_a_map_carries_its_coordinates() {
     assert_eq!(head, ["ncols 64", "nrows 48", "xllcenter 600000", "yllcenter 5199530", "cellsize 10"]);
     folder.good(&[&["export", "small.toml", "-q", "-o", "c.geojson"][..], &place].concat());
     assert!(folder.text("c.geojson").contains("urn:ogc:def:crs:EPSG::32632"));
-    // A file of heights has a CRS and bounds in it; the bounds of its pixel edges, as printed by gdalinfo, select all
-    // of it.
+    // A file of heights has a CRS and therefore bounds. The bounds of its pixel edges, as printed by gdalinfo, select
+    // all of it.
     folder.good(&["export", "small.toml", "-q", "-o", "all.npy"]);
     folder.good(&["export", "a.tif", "-q", "-o", "b.npy", "--projwin", "599995", "5200005", "600635", "5199525"]);
     assert!(folder.read("b.npy") == folder.read("all.npy"));

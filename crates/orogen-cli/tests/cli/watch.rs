@@ -31,7 +31,8 @@ fn a_change_cancels_work_that_is_outdated() {
     let watcher = Running::start_and_wait(&folder, &arguments);
     folder.replace("small.toml", SMALL);
     watcher.says("watching small.toml");
-    // A finished first run would have printed so, and its 12 800 samples per row would be here.
+    // If the first run had finished, it would have printed a message, and the summary would have 12 800 samples per
+    // row.
     assert_eq!(folder.json("out/summary.json")["width"], 64);
 }
 

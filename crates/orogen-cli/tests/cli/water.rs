@@ -89,7 +89,7 @@ fn watersheds_of_chosen_outlets() {
     let export = |out: &'static str, args: &[&'static str]| {
         folder.good(&[&["export", "valley.asc", "-o", out, "--layer", "watershed"], args].concat());
     };
-    // The middle of column 20 and row 20: 21 rows drain through it.
+    // The center of column 20 and row 20: 21 rows drain through it.
     export("one.geojson", &["--outlet", "1205,2095", "--snap", "0", "--smooth", "0"]);
     let feature = folder.json("one.geojson")["features"][0].clone();
     let expect = serde_json::json!({
@@ -102,7 +102,7 @@ fn watersheds_of_chosen_outlets() {
     }
     let ring = serde_json::json!([[[[1000, 2300], [1000, 2090], [1400, 2090], [1400, 2300], [1000, 2300]]]]);
     assert_eq!(feature["geometry"]["coordinates"], ring);
-    // Points of files are moved to the stream; the upper watershed is a part of the lower one.
+    // Points from files are moved to the stream; the upper watershed is a part of the lower one.
     folder.write("gauges.csv", "Name;X;Y\nLower \"old\";1245;2055\nUpper;1180,5;2.195e3\n");
     folder.write(
         "gauges.geojson",
@@ -193,7 +193,7 @@ fn outlets_that_have_no_watershed_are_refused() {
         let outcome = folder.run(&[&["export"], args].concat());
         assert!(outcome.code != 0 && outcome.err.contains(expect), "{args:?}: {}", outcome.err);
     }
-    // A file of outlets is not replaced by what is made of it.
+    // A file of outlets is not replaced by output that is made from it.
     folder.write("out.geojson", r#"{"type":"Point","coordinates":[1205,2095]}"#);
     let line =
         ["export", "valley.asc", "-o", "out.geojson", "--force", "--layer", "watershed", "--outlets", "out.geojson"];
