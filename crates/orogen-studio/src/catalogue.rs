@@ -1,4 +1,4 @@
-//! The texts of the interface, in one catalogue file a language: `locales/`.
+//! The texts of the interface, in one catalog file per language: `locales/`.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -17,16 +17,16 @@ pub enum Language {
     Chinese,
 }
 
-/// Texts by their keys.
+/// Texts by key.
 type Texts = BTreeMap<String, String>;
 
 static ENGLISH: LazyLock<Texts> = LazyLock::new(|| read(include_str!("../locales/en.toml")));
 static CHINESE: LazyLock<Texts> = LazyLock::new(|| read(include_str!("../locales/zh-CN.toml")));
 
-/// Reads a catalogue: tables of texts, whose keys are joined by dots.
+/// Reads a catalog: tables of texts, whose keys are joined by dots.
 fn read(file: &str) -> Texts {
     let mut texts = Texts::new();
-    // A test reads every catalogue.
+    // A test parses every catalog.
     let table: toml::Table = file.parse().unwrap_or_default();
     let mut waiting: Vec<(String, toml::Value)> = table.into_iter().collect();
     while let Some((key, value)) = waiting.pop() {
@@ -45,7 +45,7 @@ impl Language {
     /// All languages.
     pub const ALL: [Language; 2] = [Language::English, Language::Chinese];
 
-    /// Its own name.
+    /// The name of the language in that language.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -54,7 +54,7 @@ impl Language {
         }
     }
 
-    /// The language of the system, by its variables of the environment.
+    /// The language of the system, from its environment variables.
     #[must_use]
     pub fn of_system() -> Language {
         let set = ["LC_ALL", "LC_MESSAGES", "LANG"]
@@ -73,19 +73,19 @@ impl Language {
         }
     }
 
-    /// The text of a key; in English if this language lacks it, and the key itself if English does, too.
+    /// The text for a key; in English if this language lacks it, and the key itself if English also lacks it.
     #[must_use]
     pub fn text(self, key: &'static str) -> &'static str {
         self.find(key).unwrap_or(key)
     }
 
-    /// The text of a key, if a catalogue has it.
+    /// The text for a key; `None` if this catalog lacks it.
     #[must_use]
     pub fn find(self, key: &str) -> Option<&'static str> {
         self.texts().get(key).or_else(|| ENGLISH.get(key)).map(String::as_str)
     }
 
-    /// The text of a key with values in place of `{name}`.
+    /// The text for a key with values in place of `{name}`.
     #[must_use]
     pub fn fill(self, key: &'static str, values: &[(&str, &str)]) -> String {
         let mut text = self.text(key).to_string();
@@ -95,7 +95,7 @@ impl Language {
         text
     }
 
-    /// The keys of its catalogue.
+    /// The keys of the catalog.
     pub fn keys(self) -> impl Iterator<Item = &'static str> {
         self.texts().keys().map(String::as_str)
     }
@@ -148,7 +148,7 @@ mod tests {
         }
     }
 
-    /// Every `"a.b"` in the sources whose first part is a table of the catalogue.
+    /// Checks every `"a.b"` in the sources whose first part is a table of the catalog.
     #[test]
     fn every_key_in_the_sources_is_there_and_every_key_is_used() {
         let tables: BTreeSet<&str> =
@@ -168,7 +168,7 @@ mod tests {
                 for literal in text.split('"').skip(1) {
                     let is_key = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '.' | '_');
                     let Some((table, _)) = literal.split_once('.') else { continue };
-                    // Names of files are no keys.
+                    // File names are not keys.
                     if [".rs", ".wgsl", ".toml", ".json", ".png"].iter().any(|end| literal.ends_with(end)) {
                         continue;
                     }

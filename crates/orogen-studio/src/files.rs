@@ -1,6 +1,6 @@
 //! The only access to files: reading and writing recipes and the studio's own settings.
 //!
-//! All else of the studio works on texts and values, so that a build for a browser needs another file here only.
+//! The rest of the studio works on texts and values, so a build for a browser only needs a replacement of this file.
 
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -12,7 +12,7 @@ use orogen::{Error, ErrorKind, Result};
 /// Reads a text.
 ///
 /// # Errors
-/// If the file cannot be read, is too long for a recipe, or is no UTF-8.
+/// If the file cannot be read, is too long for a recipe, or is not UTF-8.
 pub fn read(path: &Path) -> Result<String> {
     let fault = |message: String| Error::new(ErrorKind::File, message);
     let bytes = open::bytes(path, "read", LONGEST_TEXT)?
@@ -31,19 +31,19 @@ pub fn write(path: &Path, text: &str) -> Result<()> {
     orogen::io::file::replace_whole(path, |out| out.write_all(text.as_bytes()))
 }
 
-/// When a file was changed last; `None` if it is not there.
+/// The time of the last change of a file; `None` if it does not exist.
 #[must_use]
 pub fn changed(path: &Path) -> Option<SystemTime> {
     std::fs::metadata(path).and_then(|metadata| metadata.modified()).ok()
 }
 
-/// Removes a file; one that is not there is no error.
+/// Removes a file; it is not an error if it does not exist.
 pub fn remove(path: &Path) {
-    // What remains is found again and can be removed then.
+    // A file that could not be removed is found again at the next start.
     let _ = std::fs::remove_file(path);
 }
 
-/// The folder of the studio's settings: `orogen` in the system's folder of settings; `None` if the system has none.
+/// The folder of the studio's settings: `orogen` in the system's settings folder; `None` if the system has none.
 #[must_use]
 pub fn settings_folder() -> Option<PathBuf> {
     let var = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
@@ -57,16 +57,16 @@ pub fn settings_folder() -> Option<PathBuf> {
     base.map(|base| base.join("orogen"))
 }
 
-/// What is in a folder.
+/// An entry of a folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Entry {
-    /// Its path.
+    /// The path.
     pub path: PathBuf,
     /// Whether it is a folder.
     pub is_folder: bool,
 }
 
-/// What is in a folder: folders first, by name; hidden ones are left out.
+/// The entries of a folder: folders first, sorted by name; hidden entries are omitted.
 ///
 /// # Errors
 /// If the folder cannot be read.

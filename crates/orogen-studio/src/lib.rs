@@ -1,7 +1,7 @@
-//! The studio of Orogen: a window in which a person designs a world by looking.
+//! The studio of Orogen: a window for designing a world interactively.
 //!
-//! It is a thin shell over the engine's session. What is edited ([`editing`]), what is shown ([`studio`], [`preview`])
-//! and from where ([`view`]) needs no graphics; the feature `window` adds what draws it.
+//! It is a thin layer over the engine's session. The edited recipe ([`editing`]), the pictures ([`studio`],
+//! [`preview`]) and the views ([`view`]) need no graphics; the feature `window` adds the code that draws them.
 #![forbid(unsafe_code)]
 
 pub mod catalogue;

@@ -1,25 +1,25 @@
-//! Unsaved text is kept in the folder of settings, so that a crash loses nothing.
+//! Keeps unsaved text in the settings folder, so that a crash loses nothing.
 
 use std::path::{Path, PathBuf};
 
 use crate::editing::document::Document;
 use crate::files;
 
-/// Keeps the text of a document that is not saved.
+/// Stores the text of an unsaved document.
 #[derive(Debug)]
 pub struct Recovery {
     file: Option<PathBuf>,
-    /// The revision that is kept.
+    /// The stored revision.
     kept: Option<u64>,
 }
 
 const FILE: &str = "studio-unsaved.toml";
 
-/// The line before the text, with the document's title.
+/// The line before the text; the document's title follows.
 const HEAD: &str = "# unsaved: ";
 
 impl Recovery {
-    /// Keeps texts in a folder. Returns the title and the text that a crash left there.
+    /// Stores texts in a folder. Returns the title and the text that a crash left there.
     #[must_use]
     pub fn new(folder: Option<&Path>) -> (Recovery, Option<(String, String)>) {
         let file = folder.map(|folder| folder.join(FILE));
@@ -30,19 +30,19 @@ impl Recovery {
         (Recovery { file, kept: None }, left)
     }
 
-    /// Keeps the text of a document if it is not saved and has changed.
+    /// Stores the text of a document if it has unsaved changes that are not stored yet.
     pub fn keep(&mut self, document: &Document) {
         if !document.is_changed() || self.kept == Some(document.revision()) {
             return;
         }
         self.kept = Some(document.revision());
         if let Some(file) = &self.file {
-            // Without a folder for settings nothing is kept.
+            // Without a settings folder nothing is stored.
             let _ = files::write(file, &format!("{HEAD}{}\n{}", document.title(), document.text()));
         }
     }
 
-    /// Forgets the text: it was saved, or is not wanted.
+    /// Removes the stored text, because it was saved or is not wanted.
     pub fn forget(&mut self) {
         self.kept = None;
         if let Some(file) = &self.file {

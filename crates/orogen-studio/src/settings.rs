@@ -1,4 +1,4 @@
-//! What is remembered between runs.
+//! Settings that are remembered between runs.
 
 use std::path::{Path, PathBuf};
 
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use crate::catalogue::Language;
 use crate::files;
 
-/// Files that are remembered.
+/// Maximum number of recent files.
 const RECENT: usize = 12;
 
-/// Dark, light, or as the system.
+/// The color theme of the interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Theme {
@@ -18,28 +18,28 @@ pub enum Theme {
     Dark,
     /// Light.
     Light,
-    /// As the system.
+    /// The theme of the system.
     #[default]
     System,
 }
 
-/// What is remembered between runs.
+/// Settings that are remembered between runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// The language of the interface; that of the system if it was never chosen.
+    /// The language of the interface; the system's language if it was never chosen.
     pub language: Option<Language>,
-    /// Its colors.
+    /// The color theme.
     pub theme: Theme,
-    /// The files opened last, the latest first.
+    /// The most recently opened files, the latest first.
     pub recent: Vec<PathBuf>,
     /// The size of the window, in points.
     pub window: Option<[f32; 2]>,
-    /// Size of the interface; 1 is normal.
+    /// Scale of the interface; 1 is normal.
     pub scale: f32,
     /// Memory limit in bytes.
     pub memory: u64,
-    /// Whether nodes of the graph have small pictures.
+    /// Whether nodes of the graph show small pictures.
     pub thumbnails: bool,
 }
 
@@ -63,7 +63,7 @@ impl Default for Settings {
 const FILE: &str = "studio.json";
 
 impl Settings {
-    /// The settings in a folder; the defaults if there are none, or none that can be read.
+    /// Reads the settings in a folder; the defaults if there are none, or they cannot be read.
     #[must_use]
     pub fn read(folder: Option<&Path>) -> Settings {
         let text = folder.and_then(|folder| files::read(&folder.join(FILE)).ok());
@@ -74,7 +74,7 @@ impl Settings {
         settings
     }
 
-    /// Writes them. Settings that cannot be written are lost; nothing else depends on them.
+    /// Writes the settings. Errors are ignored, because nothing else depends on them.
     pub fn write(&self, folder: Option<&Path>) {
         if let (Some(folder), Ok(text)) = (folder, serde_json::to_string_pretty(self)) {
             let _ = files::write(&folder.join(FILE), &text);
@@ -87,7 +87,7 @@ impl Settings {
         self.language.unwrap_or_else(Language::of_system)
     }
 
-    /// Notes that a file was opened or saved.
+    /// Records that a file was opened or saved.
     pub fn opened(&mut self, path: &Path) {
         self.recent.retain(|other| other != path);
         self.recent.insert(0, path.to_path_buf());

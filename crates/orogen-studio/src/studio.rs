@@ -1,4 +1,4 @@
-//! The state of the studio without its window: the document, what is shown of it, and the pictures.
+//! The state of the studio without its window: the document, its view, and the pictures.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -23,15 +23,15 @@ use crate::preview::worker::{Event, Wake, Worker};
 /// What is shown, and in which light.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Look {
-    /// The layer that is colored: an output, a node, or a layer derived from the heights.
+    /// The colored layer: an output, a node, or a layer derived from the heights.
     pub layer: String,
     /// What the colors show.
     pub coloring: Coloring,
     /// Azimuth and altitude of the sun, in degrees.
     pub sun: [f64; 2],
-    /// The interval of contours in metres, 0 for a round one that suits the land; none if `None`.
+    /// The interval of contours in metres; 0 chooses a round one that suits the land. No contours if `None`.
     pub contours: Option<f64>,
-    /// Samples along the longer side of the finest picture.
+    /// Number of samples along the longer side of the finest picture.
     pub finest: usize,
     /// The part of the world.
     pub region: Region,
@@ -39,7 +39,7 @@ pub struct Look {
 
 /// The state of the studio.
 pub struct Studio {
-    /// The recipe that is edited.
+    /// The edited recipe.
     pub document: Document,
     /// What is shown.
     pub look: Look,
@@ -47,25 +47,25 @@ pub struct Studio {
     pub selected: Vec<String>,
     /// The latest picture.
     pub frame: Option<Arc<Frame>>,
-    /// Why there is no newer picture.
+    /// The reason why there is no newer picture.
     pub failure: Option<Error>,
     /// Small pictures of the nodes.
     pub thumbnails: Thumbnails,
     /// Whether small pictures of the nodes are made.
     pub has_thumbnails: bool,
     worker: Worker,
-    /// What the current small pictures were asked for.
+    /// The revision and region for which the current small pictures were requested.
     asked_small: Option<(u64, Region)>,
-    /// What the current pictures were asked for: the revision of the text, and the look.
+    /// The revision of the text and the look for which the current pictures were requested.
     asked: Option<(u64, Look)>,
-    /// The finest picture, and what it was asked for.
+    /// The finest picture, with the revision and look for which it was requested.
     land: Option<(u64, Look, Arc<Frame>)>,
-    /// When its file was changed last, as far as it is known.
+    /// The time of the last known change of the document's file.
     file_time: Option<std::time::SystemTime>,
 }
 
 impl Studio {
-    /// The state with a document. `wake` is called when there is something new to show.
+    /// Creates the state for a document. `wake` is called when there is something new to show.
     #[must_use]
     pub fn new(session: Session, wake: Wake, document: Document) -> Studio {
         let look = Look::of(document.recipe());
@@ -85,7 +85,7 @@ impl Studio {
         }
     }
 
-    /// Another document in place of this one.
+    /// Replaces the document.
     pub fn open(&mut self, document: Document) {
         self.look = Look {
             sun: self.look.sun,
@@ -128,13 +128,13 @@ impl Studio {
         Ok(())
     }
 
-    /// Asks for pictures if the recipe or the look has changed since the last time.
+    /// Requests pictures if the recipe or the look has changed since the last time.
     pub fn refresh(&mut self) {
         let recipe = self.document.recipe();
         if !recipe.outputs().any(|_| true) {
             return;
         }
-        // A layer that is gone is not shown any more.
+        // A layer that no longer exists is not shown any more.
         if !has_layer(recipe, &self.look.layer) {
             self.look.layer = surface(recipe);
         }
@@ -151,7 +151,7 @@ impl Studio {
         if !self.document.is_valid() {
             return;
         }
-        // Other colors or another sun: the samples are there.
+        // With other colors or another sun, the samples can be reused.
         let is_same = |(revision, look, _): &&(u64, Look, Arc<Frame>)| {
             *revision == self.document.revision() && look.has_land_of(&self.look)
         };
@@ -169,7 +169,7 @@ impl Studio {
         });
     }
 
-    /// Asks for small pictures of the nodes when the picture of the land is done; a change cancels them.
+    /// Requests small pictures of the nodes when the picture of the land is done; a change cancels them.
     fn refresh_thumbnails(&mut self) {
         let now = (self.document.revision(), self.look.region);
         if self.asked_small.is_some_and(|asked| asked != now) || !self.has_thumbnails {
@@ -181,12 +181,12 @@ impl Studio {
         if is_time && self.asked_small.is_none() {
             self.asked_small = Some(now);
             let recipe = self.document.recipe().clone();
-            // Without a thread there are none; the picture of the land tells of that.
+            // Errors are ignored: if no thread can be started, the picture of the land reports it.
             let _ = self.thumbnails.ask(self.worker.session(), recipe, self.look.region);
         }
     }
 
-    /// Takes what the work has told. Returns whether there is a new picture.
+    /// Takes the events of the work. Returns whether there is a new picture.
     pub fn poll(&mut self) -> bool {
         let mut is_new = false;
         self.thumbnails.poll();
@@ -208,19 +208,19 @@ impl Studio {
         is_new
     }
 
-    /// Whether finer pictures are on their way.
+    /// Whether finer pictures are being made.
     #[must_use]
     pub fn is_busy(&self) -> bool {
         self.worker.is_busy()
     }
 
-    /// The share of the pictures that are asked for that is done, 0 to 1.
+    /// The completed share of the requested pictures, 0 to 1.
     #[must_use]
     pub fn share(&self) -> f32 {
         self.worker.share()
     }
 
-    /// The session for what is kept: without a graphics card, which makes previews alone.
+    /// The session for files: without a graphics card, which only makes previews.
     #[must_use]
     pub fn session(&self) -> Session {
         self.worker.session().without_device()
@@ -232,7 +232,7 @@ impl Studio {
         !self.is_busy() && self.frame.as_ref().is_some_and(|frame| frame.quality == Quality::Fine)
     }
 
-    /// Writes the document to a file, which it belongs to from then on.
+    /// Writes the document to a file, to which it then belongs.
     ///
     /// # Errors
     /// If the file cannot be written, or it was changed since it was read.
@@ -255,8 +255,8 @@ impl Studio {
         files::changed(path) != self.file_time && files::read(path).ok().as_deref() != self.document.saved()
     }
 
-    /// Looks whether another program has changed the file of the document, and reads it then. Own changes that are not
-    /// saved stay; the next [`save`](Studio::save) tells of the conflict. Returns whether it was read.
+    /// Checks whether another program has changed the file of the document, and if so, reads it. Unsaved changes are
+    /// kept; the next [`save`](Studio::save) reports the conflict. Returns whether the file was read.
     pub fn watch(&mut self) -> bool {
         let Some(path) = self.document.path().map(Path::to_path_buf) else { return false };
         if files::changed(&path) == self.file_time || self.document.is_changed() {
@@ -271,14 +271,14 @@ impl Studio {
         is_new
     }
 
-    /// The group that is selected as a whole, or else that of the first selected node.
+    /// The group that is selected as a whole, or else the group of the first selected node.
     #[must_use]
     pub fn selected_group(&self) -> Option<String> {
         let around = || self.selected.first().map(|name| groups::group_of(name)).filter(|group| !group.is_empty());
         groups::of_selection(self.document.recipe(), &self.selected).or_else(|| around().map(str::to_owned))
     }
 
-    /// The names of the layers that can be shown: outputs, layers derived from the heights.
+    /// The names of the layers that can be shown: outputs and layers derived from the heights.
     #[must_use]
     pub fn layers(&self) -> Vec<String> {
         let recipe = self.document.recipe();
@@ -291,7 +291,7 @@ impl Studio {
 }
 
 impl Look {
-    /// What is shown of a recipe at first.
+    /// The initial look for a recipe.
     #[must_use]
     pub fn of(recipe: &Recipe) -> Look {
         Look {
@@ -306,7 +306,7 @@ impl Look {
 }
 
 impl Look {
-    /// Whether the samples of what is shown are the same: all but colors and light.
+    /// Whether another look has the same samples: everything except colors and light.
     fn has_land_of(&self, other: &Look) -> bool {
         self.layer == other.layer && self.region == other.region && self.finest == other.finest
     }
@@ -320,7 +320,7 @@ pub fn surface(recipe: &Recipe) -> String {
     outputs.find(|name| *name == HEIGHT).unwrap_or(first).to_owned()
 }
 
-/// Whether a recipe has a layer: an output, a node, or one derived from the heights.
+/// Whether a recipe has a layer: an output, a node, or a layer derived from the heights.
 fn has_layer(recipe: &Recipe, layer: &str) -> bool {
     let node = layer.split_once('.').map_or(layer, |(node, _)| node);
     recipe.outputs().any(|name| name == layer)
@@ -328,8 +328,8 @@ fn has_layer(recipe: &Recipe, layer: &str) -> bool {
         || orogen::export::derived::list::named(layer).is_some()
 }
 
-/// The layer that shows a stroke of a node: the node itself if nothing reads it; otherwise what is shown, unless that
-/// is a mask that is painted.
+/// The layer for showing a stroke of a node: the node itself if nothing reads it; otherwise the layer that is already
+/// shown, unless that is a painted mask.
 fn layer_of_stroke(recipe: &Recipe, node: &str, shown: &str) -> String {
     let is_it = |input: &Input| matches!(input, Input::Node(name) if name == node);
     let reads =
@@ -347,8 +347,8 @@ fn layer_of_stroke(recipe: &Recipe, node: &str, shown: &str) -> String {
 /// Opens a recipe, a preset by its name, or a file of heights.
 ///
 /// # Errors
-/// If there is nothing of that name, or it cannot be read. A recipe that is not valid is no error: its document has the
-/// diagnostics.
+/// If there is nothing with that name, or it cannot be read. An invalid recipe is not an error: its document contains
+/// the diagnostics.
 pub fn open(argument: &Path) -> Result<Document> {
     let path = match RecipeSource::find(argument)? {
         RecipeSource::Preset(preset) => return Document::of_preset(preset),
@@ -366,7 +366,7 @@ pub fn open(argument: &Path) -> Result<Document> {
     Ok(Document::of_file(&path, text))
 }
 
-/// The path from the root, so that it still leads there if the working folder changes.
+/// The absolute path, which stays valid if the working folder changes.
 fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf())
 }

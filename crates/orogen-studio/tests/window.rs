@@ -1,4 +1,4 @@
-//! The window, used as a person uses it. Needs an adapter: `cargo xtask clients studio` installs Mesa's software
+//! Tests that use the window like a user. They need an adapter: `cargo xtask clients studio` installs Mesa's software
 //! driver.
 #![allow(clippy::unwrap_used, reason = "a failure is a failed test")]
 
@@ -42,7 +42,7 @@ fn studio<'a>(harness: &'a Harness<'_, App>) -> &'a Studio {
     harness.state().studio().unwrap()
 }
 
-/// Steps until something holds.
+/// Runs steps until a condition holds.
 fn until(harness: &mut Harness<'_, App>, what: &str, holds: impl Fn(&App) -> bool) {
     let begun = Instant::now();
     while !holds(harness.state()) {
@@ -71,7 +71,7 @@ fn a_preset_is_opened_changed_undone_saved_and_opened_again() {
     let frame = studio(&harness).frame.clone().unwrap();
     assert!(frame.quality == Quality::Fine && frame.window().width == 1024);
 
-    // Another seed, and back: ten times.
+    // Another seed, and back, ten times.
     let before = studio(&harness).document.text().to_owned();
     for _ in 0..10 {
         press(&mut harness, Modifiers::COMMAND, Key::R);
@@ -101,8 +101,8 @@ fn a_preset_is_opened_changed_undone_saved_and_opened_again() {
     assert_eq!(text, studio(&harness).document.text());
     assert_eq!(orogen::Recipe::read(&path).unwrap(), *studio(&harness).document.recipe());
 
-    // Another program replaces the file. Some file systems keep times in steps of some milliseconds, so it gets a time
-    // of its own.
+    // Another program replaces the file. Some file systems store times in steps of several milliseconds, so the file
+    // gets an explicit time.
     let new = path.with_extension("new");
     std::fs::write(&new, text.replace("octaves = 6", "octaves = 2")).unwrap();
     let later = std::time::SystemTime::now() + Duration::from_secs(9);
@@ -150,7 +150,7 @@ fn a_node_is_selected_shown_and_deleted() {
     assert!(recipe.nodes().len() == 1 && studio(&harness).document.text().contains("height = \"noise\""));
 }
 
-/// Every preset opens and is drawn; the first picture of the default comes soon.
+/// Every preset opens and is drawn; the first picture of the default preset comes soon.
 #[test]
 fn every_preset_is_drawn() {
     let folder = TestFolder::new("studio-presets").unwrap();
@@ -159,7 +159,7 @@ fn every_preset_is_drawn() {
         until(&mut harness, preset.name, |app| app.studio().unwrap().frame.is_some());
         harness.run_steps(2);
         let picture = harness.render().unwrap();
-        // The land is in the middle of the view, and is not of one color.
+        // The land is in the middle of the view, and has several colors.
         let mut colors = std::collections::HashSet::new();
         for y in 200..400 {
             for x in 300..700 {
@@ -176,12 +176,12 @@ fn it_speaks_chinese_if_the_system_has_letters_for_it() {
     let folder = TestFolder::new("studio-chinese").unwrap();
     let mut harness = window(&folder, Some("classic"), Language::Chinese);
     harness.run_steps(3);
-    // Without a font it says so, in English.
+    // Without a font it reports so, in English.
     let speaks = harness.query_by_label("节点图").is_some();
     assert!(speaks || harness.query_by_label("Graph").is_some());
 }
 
-/// Broken and huge recipes open; without a graphics card all but the view in space is there.
+/// Broken and huge recipes open; without a graphics card everything except the 3D view is available.
 #[test]
 fn broken_and_huge_recipes_open_and_so_does_a_window_without_a_graphics_card() {
     let folder = TestFolder::new("studio-broken").unwrap();
@@ -190,7 +190,7 @@ fn broken_and_huge_recipes_open_and_so_does_a_window_without_a_graphics_card() {
     let mut harness = window(&folder, broken.to_str(), Language::English);
     harness.run_steps(3);
     assert!(!studio(&harness).document.is_valid());
-    // The text is shown with its error, and can be mended.
+    // The text is shown with its error, and can be fixed.
     assert!(harness.query_by_label_contains("The text has errors").is_some());
     assert!(harness.query_by_role_and_label(Role::TextInput, "recipe").is_some());
     assert!(harness.render().is_ok());
@@ -227,7 +227,7 @@ fn sizes_from_tiny_to_large_are_drawn() {
     }
 }
 
-/// Presses and releases the button of the pointer at a position.
+/// Presses and releases the pointer button at a position.
 fn click_at(harness: &mut Harness<'_, App>, at: Pos2) {
     harness.event(Event::PointerMoved(at));
     for pressed in [true, false] {
@@ -238,7 +238,7 @@ fn click_at(harness: &mut Harness<'_, App>, at: Pos2) {
             modifiers: Modifiers::NONE,
         });
     }
-    // Longer than between the clicks of a double click.
+    // Longer than the time between the clicks of a double click.
     harness.run_steps(30);
 }
 
@@ -280,7 +280,7 @@ fn a_line_is_drawn_on_the_map_and_its_points_are_moved() {
     assert_eq!(points(&harness), before);
 }
 
-/// Drags the button of the pointer along a line.
+/// Moves the pointer along a line with its button pressed.
 fn drag_along(harness: &mut Harness<'_, App>, line: &[Pos2]) {
     let (first, last) = (line[0], line[line.len() - 1]);
     harness.event(Event::PointerMoved(first));
@@ -295,7 +295,7 @@ fn drag_along(harness: &mut Harness<'_, App>, line: &[Pos2]) {
     harness.run_steps(3);
 }
 
-/// The strokes of a node; none if it does not paint.
+/// The strokes of a node; empty if it is not a paint node.
 fn strokes<'a>(harness: &'a Harness<'_, App>, name: &str) -> &'a [Stroke] {
     let mut nodes = studio(harness).document.recipe().nodes().iter();
     match nodes.find(|named| named.name == name).map(|named| &named.node) {
@@ -324,13 +324,13 @@ fn land_and_a_mask_are_painted_on_the_map_and_each_stroke_is_undone_in_one_step(
     assert_eq!(studio(&harness).selected, ["paint"]);
     let stroke = strokes(&harness, "paint")[0].clone();
     assert!(stroke.points.len() == 2 && stroke.points[0][0] < stroke.points[1][0], "{stroke:?}");
-    // The map shows it.
+    // The map shows the stroke.
     until_done(&mut harness);
     let raised = studio(&harness).frame.clone().unwrap();
     let middle = [0, 1].map(|k| (stroke.points[0][k] + stroke.points[1][k]) / 2.0);
     let [low, high] = [&land, &raised].map(|frame| f64::from(frame.at(middle).unwrap()[1]));
     assert!(stroke.value > 0.0 && (high - low - stroke.value).abs() < 1e-2, "{low} {high} {stroke:?}");
-    // A key makes the brush larger, and the land is lowered by a dab.
+    // A key makes the brush larger, and a dab lowers the land.
     harness.get_by_label("Lower").click();
     harness.run_steps(2);
     harness.event(Event::PointerMoved(at(0.5, 0.4)));
@@ -339,7 +339,7 @@ fn land_and_a_mask_are_painted_on_the_map_and_each_stroke_is_undone_in_one_step(
     click_at(&mut harness, at(0.5, 0.4));
     let dab = strokes(&harness, "paint")[1].clone();
     assert!(dab.points.len() == 1 && dab.value == -stroke.value && dab.radius > stroke.radius, "{dab:?}");
-    // A mask is a node of its own, which the map shows.
+    // A mask is a separate node, which the map shows.
     harness.get_by_label("Paint").click();
     harness.run_steps(2);
     drag_along(&mut harness, &line);
@@ -356,7 +356,7 @@ fn land_and_a_mask_are_painted_on_the_map_and_each_stroke_is_undone_in_one_step(
     assert_eq!(studio(&harness).document.text(), before);
 }
 
-/// From a change of a slider to the first picture: the times that the machine allows are far below these limits.
+/// From a change of a slider to the first picture: typical times are far below these limits.
 #[test]
 fn a_slider_shows_the_land_soon() {
     let folder = TestFolder::new("studio-slider").unwrap();
@@ -375,7 +375,7 @@ fn a_slider_shows_the_land_soon() {
     assert!(studio(&harness).document.text().contains("[parameters.uplift_rate]"));
 }
 
-/// Chooses an entry of the list of what the colors show.
+/// Selects an entry in the list of colorings.
 fn choose_color(harness: &mut Harness<'_, App>, from: &str, to: &str) {
     harness.get_by_value(from).click();
     harness.run_steps(3);
@@ -396,7 +396,7 @@ fn colors_are_chosen_and_edited() {
     let Legend::Entries(entries) = &classes.legend else { panic!() };
     assert!(entries.len() > 2 && classes.albedo != plain.albedo && classes.heights == plain.heights);
 
-    // The ramp of the view is edited: a color is added by a double click, dragged, and removed again.
+    // Edits the ramp of the view: a color is added by a double click, dragged, and removed again.
     harness.get_by_label("Edit colors").click();
     harness.run_steps(3);
     let Coloring::Edited(before) = studio(&harness).look.coloring.clone() else { panic!() };
@@ -404,7 +404,7 @@ fn colors_are_chosen_and_edited() {
     let at = bar.min + bar.size() * egui::vec2(0.31, 0.3);
     harness.event(Event::PointerMoved(at));
     harness.run_steps(1);
-    // In one step: steps are further apart than the clicks of a double click.
+    // In a single step, because separate steps are further apart than the clicks of a double click.
     for pressed in [true, false, true, false] {
         let button = PointerButton::Primary;
         let click = Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE };
@@ -474,7 +474,7 @@ fn nodes_are_grouped_entered_renamed_and_all_of_it_is_undone() {
     until_done(&mut harness);
     let before = studio(&harness).document.text().to_owned();
     let heights = studio(&harness).frame.clone().unwrap().heights.clone();
-    // A rectangle from one corner of the graph to the other.
+    // A selection rectangle from one corner of the graph to the other.
     let rects = ["node noise", "node terrain"].map(|label| harness.get_by_label(label).rect());
     let all = rects[0].union(rects[1]).expand(6.0);
     harness.drag_at(all.min);
@@ -489,7 +489,7 @@ fn nodes_are_grouped_entered_renamed_and_all_of_it_is_undone() {
     press(&mut harness, Modifiers::COMMAND, Key::G);
     assert!(studio(&harness).document.text().contains("[nodes.\"group/noise\"]"));
     assert!(harness.query_by_label("node group/noise").is_none());
-    // Its inner nodes are seen, and its name is changed in the inspector.
+    // Its inner nodes are visible, and its name is changed in the inspector.
     harness.get_by_label("Open").click();
     harness.run_steps(3);
     let inner = harness.get_by_label("node group/noise").rect().center();
@@ -561,14 +561,14 @@ fn a_broken_expression_says_so_and_is_not_applied() {
     harness.run_steps(3);
     assert!(harness.query_by_label_contains("unknown node `hils`").is_some());
     assert_eq!(studio(&harness).document.text(), text);
-    // What is typed stays when another node is looked at in between.
+    // Typed text is kept when another node is selected in between.
     harness.get_by_label("node hills").click();
     harness.run_steps(3);
     harness.get_by_label("node land").click();
     harness.run_steps(3);
     assert_eq!(studio(&harness).selected, ["land"]);
     assert!(harness.query_by_label_contains("unknown node `hils`").is_some());
-    // A completion mends it.
+    // A completion fixes it.
     harness.get_by_role_and_label(Role::TextInput, "land.expr").focus();
     harness.run_steps(2);
     press(&mut harness, Modifiers::COMMAND, Key::A);

@@ -1,4 +1,4 @@
-//! A brush with which a person paints on the map, and the node that takes its strokes.
+//! A brush for painting on the map, and the node that receives its strokes.
 
 use std::collections::HashSet;
 
@@ -12,53 +12,53 @@ use super::names;
 use super::strokes::{OP, Placement};
 use super::thinning::thinned;
 
-/// What a brush does.
+/// The effect of a brush.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effect {
-    /// It paints a mask.
+    /// Paints a mask.
     Paint,
-    /// It removes what was painted before.
+    /// Erases painted parts of a mask.
     Erase,
-    /// It raises the land.
+    /// Raises the land.
     Raise,
-    /// It lowers the land.
+    /// Lowers the land.
     Lower,
 }
 
 impl Effect {
-    /// All of them.
+    /// All effects.
     pub const ALL: [Effect; 4] = [Effect::Paint, Effect::Erase, Effect::Raise, Effect::Lower];
 
-    /// Whether it changes heights.
+    /// Whether the effect changes heights.
     #[must_use]
     pub fn is_of_heights(self) -> bool {
         matches!(self, Effect::Raise | Effect::Lower)
     }
 }
 
-/// Ends of the radius, in metres.
+/// Minimum and maximum radius, in metres.
 pub const RADII: [f64; 2] = [0.1, 1e6];
 
-/// The share of the radius by which the line of a stroke may differ from that of the pointer.
+/// Maximum distance of a stroke's line from the line of the pointer, relative to the radius.
 const TOLERANCE: f64 = 0.02;
 
 /// A brush.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Brush {
-    /// What it does.
+    /// The effect.
     pub effect: Effect,
-    /// Its radius in metres.
+    /// The radius in metres.
     pub radius: f64,
-    /// The share of the radius with full effect.
+    /// The share of the radius with full effect, 0 to 1.
     pub hardness: f64,
-    /// How much of a mask is painted or erased at once, 0 to 1.
+    /// How much of a mask a stroke paints or erases, 0 to 1.
     pub strength: f64,
-    /// How far the land is raised or lowered, in metres.
+    /// By how much the land is raised or lowered, in metres.
     pub height: f64,
 }
 
 impl Brush {
-    /// A brush for a view of a place: its sides in metres, and the range of its heights.
+    /// A brush that suits a view with this side in metres and this range of heights.
     #[must_use]
     pub fn fitting(effect: Effect, side: f64, heights: [f32; 2]) -> Brush {
         let range = f64::from(heights[1]) - f64::from(heights[0]);
@@ -66,13 +66,14 @@ impl Brush {
         Brush { effect, radius: round_number(side * 0.04), hardness: 0.3, strength: 1.0, height }
     }
 
-    /// Makes it larger by a factor above 1, or smaller.
+    /// Multiplies the radius by a factor.
     pub fn scale(&mut self, factor: f64) {
         let radius = (self.radius * factor).clamp(RADII[0], RADII[1]);
         self.radius = format!("{radius:.2e}").parse().unwrap_or(radius);
     }
 
-    /// Its stroke along the line of the pointer. The points are few, and have as few digits as the radius needs.
+    /// The stroke of the brush along the line of the pointer. It has few points, with as few digits as the radius
+    /// needs.
     #[must_use]
     pub fn stroke(&self, line: &[[f64; 2]]) -> Stroke {
         let digits = self.digits();
@@ -90,13 +91,13 @@ impl Brush {
         Stroke { points, radius: self.radius, hardness: self.hardness, mode, value, strength }
     }
 
-    /// Decimal places of positions: a unit of the last one is at most the tolerance.
+    /// Number of decimal places of positions: a unit of the last place is at most the tolerance.
     fn digits(&self) -> i32 {
         -(libm::log10(self.radius * TOLERANCE).floor() as i32)
     }
 }
 
-/// A number to decimal places, as the text can have it without further digits; negative places are tens, hundreds and
+/// A number rounded to decimal places such that its text has no further digits; negative places are tens, hundreds and
 /// so on.
 fn rounded(number: f64, digits: i32) -> f64 {
     let scale = libm::pow(10.0, f64::from(digits.abs()));
@@ -106,7 +107,7 @@ fn rounded(number: f64, digits: i32) -> f64 {
     }
 }
 
-/// The next smaller of 1, 2, 5, 10, 20 and so on.
+/// The largest of 1, 2, 5, 10, 20 and so on that is not larger.
 fn round_number(number: f64) -> f64 {
     let number = number.clamp(RADII[0], RADII[1]);
     let power = libm::log10(number).floor() as i32;
@@ -114,22 +115,22 @@ fn round_number(number: f64) -> f64 {
     steps.into_iter().find(|step| *step <= number).unwrap_or(number)
 }
 
-/// A stroke that is being painted.
+/// A stroke while it is being painted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Painting {
     brush: Brush,
     node: String,
     placement: Placement,
-    /// The number of strokes that the node had before.
+    /// Number of strokes that the node had before.
     at: usize,
     /// The positions of the pointer.
     line: Vec<[f64; 2]>,
 }
 
 impl Painting {
-    /// Begins a stroke at a position. It goes to the selected node if that paints and the effect fits it, to one that
-    /// is connected with it, or to a new one. `surface` is the output of the heights. `None` if there is nothing to
-    /// erase.
+    /// Starts a stroke at a position. It goes to the selected node if that is a paint node that suits the effect,
+    /// otherwise to a suitable one connected with it, or to a new one. `surface` is the output with the heights. `None`
+    /// if there is nothing to erase.
     #[must_use]
     pub fn begin(
         brush: Brush,
@@ -143,7 +144,7 @@ impl Painting {
         Some(Painting { brush, node, placement, at: count, line: vec![at] })
     }
 
-    /// Continues it to a position. Returns whether it is longer now.
+    /// Continues the stroke to a position. Returns whether it became longer.
     pub fn continue_to(&mut self, at: [f64; 2]) -> bool {
         let is_far = |last: &[f64; 2]| libm::hypot(at[0] - last[0], at[1] - last[1]) > self.brush.radius * TOLERANCE;
         let grows = self.line.last().is_none_or(is_far);
@@ -153,7 +154,7 @@ impl Painting {
         grows
     }
 
-    /// The edit that makes it, in place of what it was before.
+    /// The edit that writes the stroke, replacing its shorter form.
     #[must_use]
     pub fn edit(&self) -> Edit {
         let (node, placement, at) = (self.node.clone(), self.placement.clone(), self.at);
@@ -167,7 +168,7 @@ impl Painting {
     }
 }
 
-/// The node of this name, if it paints.
+/// The node with this name, if it is a paint node.
 fn painted<'a>(recipe: &'a Recipe, name: &str) -> Option<&'a Paint> {
     recipe.nodes().iter().find(|named| named.name == name).and_then(|named| match &named.node {
         Node::Paint(paint) => Some(paint),
@@ -175,7 +176,7 @@ fn painted<'a>(recipe: &'a Recipe, name: &str) -> Option<&'a Paint> {
     })
 }
 
-/// The node that takes strokes, and where it is put if it is not there.
+/// The node for new strokes, and where to put it if it does not exist.
 fn target(recipe: &Recipe, selected: Option<&str>, surface: &str, effect: Effect) -> Option<(String, Placement)> {
     let nodes = recipe.nodes();
     let selected = selected.and_then(|name| nodes.iter().find(|named| named.name == name));

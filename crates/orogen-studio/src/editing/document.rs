@@ -1,4 +1,4 @@
-//! A document: a recipe's text with its history, what it means, and the file it belongs to.
+//! A document: the text of a recipe with its history, the parsed recipe, and the file it belongs to.
 
 use std::path::{Path, PathBuf};
 
@@ -12,15 +12,15 @@ use super::history::History;
 /// A recipe that is being edited.
 #[derive(Debug, Clone)]
 pub struct Document {
-    /// Its title: the name of its file, or of what it was made from.
+    /// The title: the name of its file, or of its origin.
     title: String,
     path: Option<PathBuf>,
-    /// The folder of relative paths while it has no file.
+    /// The folder that paths are relative to while the document has no file.
     folder: Option<PathBuf>,
-    /// What it was made from, while it has no file.
+    /// The origin of the document while it has no file.
     origin: Option<RecipeSource>,
     history: History,
-    /// The text in its file; `None` if it has none.
+    /// The text in the file; `None` if there is no file.
     saved: Option<String>,
     recipe: Recipe,
     diagnostics: Vec<Diagnostic>,
@@ -28,10 +28,10 @@ pub struct Document {
 }
 
 impl Document {
-    /// A document of a text that has no file yet.
+    /// A document with a text that has no file yet.
     ///
     /// # Errors
-    /// If the text is no valid recipe.
+    /// If the text is not a valid recipe.
     pub fn new(title: &str, text: String) -> Result<Document> {
         let recipe = Registry::new().parse(&text, title)?;
         Ok(Document {
@@ -50,9 +50,9 @@ impl Document {
     /// A copy of a preset.
     ///
     /// # Errors
-    /// None in a release: a test opens every preset.
+    /// None in practice: a test opens every preset.
     pub fn of_preset(preset: &Preset) -> Result<Document> {
-        // The schema is that of the repository.
+        // The path of the schema is only valid in the repository.
         let text = preset.text.trim_start_matches("#:schema orogen.schema.json").trim_start().to_string();
         let origin = presets::find(preset.name).map(RecipeSource::Preset);
         Ok(Document { origin, ..Document::new(preset.name, text)? })
@@ -71,8 +71,8 @@ impl Document {
         Ok(document)
     }
 
-    /// The document of a file with this text. A recipe that is not valid opens, too: its errors are shown, and its
-    /// recipe is empty until they are mended.
+    /// The document of a file with this text. An invalid recipe can be opened too: its errors are shown, and its recipe
+    /// is empty until they are fixed.
     #[must_use]
     pub fn of_file(path: &Path, text: String) -> Document {
         let title = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
@@ -91,11 +91,11 @@ impl Document {
         document
     }
 
-    /// A recipe that was written as JSON, as TOML: it has no file of its own yet, and relative paths start in the
-    /// folder of its file.
+    /// A recipe that was written as JSON, converted to TOML. It has no file yet, and relative paths start in the folder
+    /// of the JSON file.
     ///
     /// # Errors
-    /// If it is no valid recipe.
+    /// If it is not a valid recipe.
     pub fn of_json(path: &Path, text: &str) -> Result<Document> {
         let recipe = Registry::new().parse_as(text, path)?;
         let title = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
@@ -106,25 +106,25 @@ impl Document {
         Ok(document)
     }
 
-    /// A text that was not saved: it has no file yet, and is changed.
+    /// A text that was not saved: it has no file yet, and counts as changed.
     #[must_use]
     pub fn recovered(name: &Path, text: String) -> Document {
         Document { path: None, saved: Some(String::new()), ..Document::of_file(name, text) }
     }
 
-    /// Its title.
+    /// The title.
     #[must_use]
     pub fn title(&self) -> &str {
         &self.title
     }
 
-    /// Its file.
+    /// The file.
     #[must_use]
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
 
-    /// What a command line calls it; `None` if its text is in no file.
+    /// The argument for command lines that refers to the document; `None` if its text is in no file.
     #[must_use]
     pub fn argument(&self) -> Option<String> {
         let path = |path: &Path| path.to_string_lossy().into_owned();
@@ -137,25 +137,25 @@ impl Document {
         }
     }
 
-    /// Whether it is a file of heights, and nothing else.
+    /// Whether the document is only a file of heights.
     #[must_use]
     pub fn is_place(&self) -> bool {
         self.path.is_none() && !self.is_changed() && matches!(self.origin, Some(RecipeSource::Dem(_)))
     }
 
-    /// Its text.
+    /// The text.
     #[must_use]
     pub fn text(&self) -> &str {
         self.history.text()
     }
 
-    /// What its text means, or what it meant when it was last valid.
+    /// The recipe of the text, or of the last valid text.
     #[must_use]
     pub fn recipe(&self) -> &Recipe {
         &self.recipe
     }
 
-    /// What is wrong with its text; nothing if it is valid.
+    /// The errors of the text; empty if it is valid.
     #[must_use]
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.diagnostics
@@ -167,13 +167,13 @@ impl Document {
         self.diagnostics.is_empty()
     }
 
-    /// Increases with each change of the text.
+    /// A number that increases with each change of the text.
     #[must_use]
     pub fn revision(&self) -> u64 {
         self.revision
     }
 
-    /// Whether the text differs from that in its file.
+    /// Whether the text differs from the text in the file.
     #[must_use]
     pub fn is_changed(&self) -> bool {
         match &self.saved {
@@ -182,13 +182,13 @@ impl Document {
         }
     }
 
-    /// Its undo and redo, for labels.
+    /// The history for undo and redo, for labels.
     #[must_use]
     pub fn history(&self) -> &History {
         &self.history
     }
 
-    /// Sets the text, as typed. Typing on is one step.
+    /// Sets the text, as typed. Continued typing is one step.
     pub fn type_text(&mut self, text: String) {
         self.set(text, "edit.text", Some("text"));
     }
@@ -196,7 +196,7 @@ impl Document {
     /// Applies an edit.
     ///
     /// # Errors
-    /// If the text is not valid, or the edit does not lead to a valid recipe; then nothing changes.
+    /// If the text is not valid, or the edit does not give a valid recipe; then nothing changes.
     pub fn apply(&mut self, edit: &Edit) -> Result<()> {
         let (text, recipe) = self.edited(edit)?;
         let gesture = edit.gesture();
@@ -210,15 +210,15 @@ impl Document {
         Ok(())
     }
 
-    /// Whether an edit could be applied.
+    /// Checks whether an edit could be applied.
     ///
     /// # Errors
-    /// As [`Document::apply`].
+    /// The errors of [`Document::apply`].
     pub fn check(&self, edit: &Edit) -> Result<()> {
         self.edited(edit).map(|_| ())
     }
 
-    /// The text after an edit, and what it means.
+    /// The text after an edit, and its recipe.
     fn edited(&self, edit: &Edit) -> Result<(String, Recipe)> {
         let fault = |message: String| Error::new(ErrorKind::Recipe, message);
         if !self.is_valid() {
@@ -234,13 +234,13 @@ impl Document {
         self.history.end_gesture();
     }
 
-    /// Goes back by a step; false if there is none.
+    /// Goes back by one step; false if there is none.
     pub fn undo(&mut self) -> bool {
         let went = self.history.undo();
         self.went(went)
     }
 
-    /// Goes forward by a step; false if there is none.
+    /// Goes forward by one step; false if there is none.
     pub fn redo(&mut self) -> bool {
         let went = self.history.redo();
         self.went(went)
@@ -254,25 +254,25 @@ impl Document {
         went
     }
 
-    /// Notes that the text is in this file now.
+    /// Records that the text is now in this file.
     pub fn saved_to(&mut self, path: &Path) {
         self.title = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         let moved = self.path.as_deref() != Some(path);
         self.path = Some(path.to_path_buf());
         self.saved = Some(self.text().to_string());
         if moved {
-            // Relative paths start elsewhere.
+            // Relative paths now start in another folder.
             self.read();
         }
     }
 
-    /// Takes over a text that another program wrote to its file. It can be undone.
+    /// Takes over a text that another program wrote to the file. This can be undone.
     pub fn reload(&mut self, text: String) {
         self.set(text.clone(), "edit.reload", None);
         self.saved = Some(text);
     }
 
-    /// The text that its file had when it was read or written.
+    /// The text of the file when it was last read or written.
     #[must_use]
     pub fn saved(&self) -> Option<&str> {
         self.saved.as_deref()
@@ -287,7 +287,7 @@ impl Document {
         self.read();
     }
 
-    /// Reads the text.
+    /// Parses the text.
     fn read(&mut self) {
         match self.parse(self.text()) {
             Ok(recipe) => {

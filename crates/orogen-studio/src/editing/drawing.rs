@@ -1,4 +1,4 @@
-//! Lines and areas that are drawn on the map: the points of `path` and `polygon`.
+//! Lines and areas drawn on the map: the points of `path` and `polygon`.
 
 use orogen::node::Node;
 use orogen::value::{Spanned, Value};
@@ -6,10 +6,10 @@ use orogen::value::{Spanned, Value};
 /// The parameter with the points.
 pub const POINTS: &str = "points";
 
-/// The ops that are drawn.
+/// The ops that are drawn on the map.
 pub const OPS: [&str; 2] = ["path", "polygon"];
 
-/// Points as a value of a recipe.
+/// Converts points to a value of a recipe.
 #[must_use]
 pub fn value(points: &[[f64; 2]]) -> Value {
     let pair =
@@ -17,8 +17,8 @@ pub fn value(points: &[[f64; 2]]) -> Value {
     Value::List(points.iter().map(|point| Spanned::unplaced(pair(point))).collect())
 }
 
-/// The points of a node that is one line or one area in the plane; `None` for other nodes, several lines, and points
-/// with heights, which are edited as text.
+/// The points of a node with a single line or area in the plane; `None` for other nodes, several lines, and points with
+/// heights, which are edited as text.
 #[must_use]
 pub fn points_of(node: &Node) -> Option<Vec<[f64; 2]>> {
     let spec = node.spec();

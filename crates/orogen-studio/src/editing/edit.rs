@@ -1,4 +1,4 @@
-//! Edits of a recipe's text. Comments, order and all that is not edited stay.
+//! Edits of a recipe's text. Comments, order and everything that is not edited are kept.
 
 use std::collections::{HashMap, HashSet};
 
@@ -19,43 +19,43 @@ use super::{groups, names};
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs, reason = "the names of fields say what they are")]
 pub enum Edit {
-    /// The seed of the world.
+    /// Sets the seed of the world.
     Seed(u64),
-    /// A number of the world: `cell`, `sea_level`.
+    /// Sets a number of the world: `cell`, `sea_level`.
     World(&'static str, f64),
-    /// The default of a parameter of the recipe.
+    /// Sets the default of a parameter of the recipe.
     Default { parameter: String, value: f64 },
-    /// A parameter of a node.
+    /// Sets a parameter of a node.
     Param { node: String, key: String, value: Value },
-    /// A parameter of a node gets its default.
+    /// Resets a parameter of a node to its default.
     Reset { node: String, key: String },
-    /// An input of a node, or its `mask`: another node or layer, a number, or nothing.
+    /// Sets an input of a node, or its `mask`, to another node or layer, a number, or nothing.
     Connect { node: String, input: String, source: Input },
-    /// An output: a node or layer, or nothing.
+    /// Sets an output to a node or layer, or removes it.
     Output { name: String, source: Input },
-    /// The colors of a surface or a terrain class, by its number.
+    /// Sets the colors of a surface or a terrain class, by its index.
     Colors { ground: Ground, index: usize, colors: Vec<Rgb> },
-    /// A new node with some inputs and parameters. Required inputs that `inputs` lacks are 0.
+    /// Adds a node with some inputs and parameters. Required inputs that are not in `inputs` are 0.
     Add { name: String, op: String, inputs: Vec<(String, String)>, params: Vec<(String, Value)> },
-    /// Stroke number `at`, from 0, of a node that paints: a new one, or a longer form of the last one. A node that is
-    /// not there is made at `placement`.
+    /// Writes stroke number `at`, from 0, of a paint node: a new stroke, or a longer form of the last one. A node that
+    /// does not exist is created at `placement`.
     Stroke { node: String, placement: Placement, at: usize, stroke: Stroke },
-    /// Nodes are removed; what read one reads its first input.
+    /// Removes nodes; readers of a node then read its first input.
     Delete(Vec<String>),
-    /// Copies of nodes; connections among them are those of the copies.
+    /// Copies nodes; connections among them become connections among the copies.
     Duplicate(Vec<String>),
-    /// Another name; what refers to the node does so by the new name.
+    /// Renames a node, including all references to it.
     Rename { from: String, to: String },
-    /// Nodes become a group of this name.
+    /// Puts nodes into a new group with this name.
     Group { nodes: Vec<String>, name: String },
-    /// The nodes of a group are put beside it.
+    /// Dissolves a group; its nodes move to the group around it.
     Ungroup(String),
-    /// Another name for a group.
+    /// Renames a group.
     RenameGroup { from: String, to: String },
 }
 
 impl Edit {
-    /// What it does, as a key of the catalogue of texts.
+    /// What the edit does, as a key of the catalog of texts.
     #[must_use]
     pub fn label(&self) -> &'static str {
         match self {
@@ -75,7 +75,7 @@ impl Edit {
         }
     }
 
-    /// The name of the gesture that it is part of: edits of one value, one after the other, are undone together.
+    /// The name of the gesture that the edit is part of: successive edits of one value are undone together.
     #[must_use]
     pub fn gesture(&self) -> Option<String> {
         match self {
@@ -90,7 +90,7 @@ impl Edit {
     }
 }
 
-/// The names of nodes that an edit changes: from and to.
+/// The nodes that an edit renames: old and new name.
 #[must_use]
 pub fn renames(recipe: &Recipe, edit: &Edit) -> Vec<(String, String)> {
     match edit {
@@ -102,10 +102,10 @@ pub fn renames(recipe: &Recipe, edit: &Edit) -> Vec<(String, String)> {
     }
 }
 
-/// Applies an edit to the text of a recipe; `recipe` is what the text means.
+/// Applies an edit to the text of a recipe; `recipe` is the parsed text.
 ///
 /// # Errors
-/// If the text is no TOML, or has no such node, parameter or key: the message says which.
+/// If the text is not TOML, or has no such node, parameter or key; the message says which.
 pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String> {
     let mut document: DocumentMut = text.parse().map_err(|error| format!("{error}"))?;
     let known = |name: &str| match recipe.nodes().iter().any(|named| named.name == name) {
@@ -225,7 +225,7 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
     Ok(document.to_string())
 }
 
-/// The key under which a node has an input or parameter: a former key if that is written.
+/// The key of an input or parameter in the text of a node: an old alias if that is used.
 fn written_key(op: Option<&str>, key: &str, has: impl Fn(&str) -> bool) -> String {
     let spec = op.and_then(Node::named).map(|node| node.spec());
     let alias = spec.and_then(|spec| spec.aliases().find(|(alias, name)| *name == key && has(alias)));
@@ -244,7 +244,7 @@ fn add(document: &mut DocumentMut, name: &str, op: &str, inputs: &[(String, Stri
         }
     }
     if spec.named_inputs {
-        // An expression without names; a source is its first one.
+        // For an expression without names, `source` is its first name.
         match inputs.first() {
             Some((_, source)) => {
                 own.insert("expr", toml_edit::value("a"));
@@ -263,7 +263,7 @@ fn node_of(reference: &str) -> &str {
 
 fn delete(document: &mut DocumentMut, recipe: &Recipe, names: &[String]) -> Result<(), String> {
     let gone: HashSet<&str> = names.iter().map(String::as_str).collect();
-    // What remains of a node for those that read it: its first input.
+    // What readers of a removed node read instead: its first input.
     let first: HashMap<&str, Input> = recipe
         .nodes()
         .iter()
@@ -281,7 +281,7 @@ fn delete(document: &mut DocumentMut, recipe: &Recipe, names: &[String]) -> Resu
         if !gone.contains(node_of(reference)) {
             return Change::Keep;
         }
-        // A layer other than the first is nothing that the input has.
+        // A layer other than the first cannot be replaced by the input.
         let mut left = if reference.contains('.') { Input::None } else { Input::Node(reference.to_string()) };
         for _ in 0..=names.len() {
             match &left {
@@ -298,7 +298,7 @@ fn delete(document: &mut DocumentMut, recipe: &Recipe, names: &[String]) -> Resu
             _ => Change::Remove,
         }
     });
-    // Names in expressions that referred to a removed node by its own name.
+    // Names in expressions that referred to a removed node directly by its name.
     for named in recipe.nodes().iter().filter(|named| !gone.contains(named.name.as_str())) {
         if !named.node.spec().named_inputs {
             continue;
@@ -319,7 +319,7 @@ fn delete(document: &mut DocumentMut, recipe: &Recipe, names: &[String]) -> Resu
 fn duplicate(document: &mut DocumentMut, recipe: &Recipe, names: &[String]) -> Result<(), String> {
     let mut taken: HashSet<String> = recipe.nodes().iter().map(|named| named.name.clone()).collect();
     let mut copies = HashMap::new();
-    // A whole group becomes a group of its own.
+    // A whole group becomes a new group.
     let group = groups::of_selection(recipe, names);
     let copy = group.as_ref().map(|group| groups::free(recipe, groups::group_of(group), groups::own_name(group)));
     for name in names {
@@ -335,7 +335,7 @@ fn duplicate(document: &mut DocumentMut, recipe: &Recipe, names: &[String]) -> R
     for name in names {
         let mut copy = nodes.get(name).cloned().ok_or_else(|| format!("there is no node `{name}`"))?;
         if let Some(own) = copy.as_table_like_mut() {
-            // Names in an expression that mean nodes which are copied, too.
+            // Names in an expression that refer to nodes that are also copied.
             for named in recipe.nodes().iter().filter(|named| named.name == *name && named.node.spec().named_inputs) {
                 for (i, input) in named.node.inputs().iter().enumerate() {
                     let is_meant = *named.node.input(i) == Input::Node(input.name.to_string());
@@ -369,7 +369,7 @@ fn used_names(document: &DocumentMut) -> Vec<String> {
     uses.map(|uses| uses.iter().map(|(name, _)| name.to_owned()).collect()).unwrap_or_default()
 }
 
-/// Gives nodes other names, and all that refers to them.
+/// Renames nodes, and all references to them.
 fn rename(document: &mut DocumentMut, recipe: &Recipe, renames: &[(String, String)]) -> Result<(), String> {
     let new: HashMap<&str, &str> = renames.iter().map(|(from, to)| (from.as_str(), to.as_str())).collect();
     let mut taken: HashSet<&str> =
@@ -377,7 +377,7 @@ fn rename(document: &mut DocumentMut, recipe: &Recipe, renames: &[(String, Strin
     if let Some((_, to)) = renames.iter().find(|(_, to)| !taken.insert(to)) {
         return Err(format!("there is a node `{to}` already"));
     }
-    // Expressions keep their names: those that meant a node get a key that says so.
+    // Expressions keep their names: names that referred to a node get a key that says so.
     for named in recipe.nodes().iter().filter(|named| named.node.spec().named_inputs) {
         for (i, input) in named.node.inputs().iter().enumerate() {
             let is_meant =
@@ -396,9 +396,9 @@ fn rename(document: &mut DocumentMut, recipe: &Recipe, renames: &[(String, Strin
     Ok(())
 }
 
-/// Renames keys; their places in the text stay.
+/// Renames keys; their positions in the text are kept.
 fn rename_keys(nodes: &mut dyn toml_edit::TableLike, new: &HashMap<&str, &str>) {
-    // Tables are written by their position in the text, which the item keeps.
+    // Tables are written by their position in the text, which is stored in the item.
     let keys: Vec<String> = nodes.iter().map(|(key, _)| key.to_owned()).collect();
     let mut entries = Vec::with_capacity(keys.len());
     for key in &keys {

@@ -1,4 +1,4 @@
-//! Expressions and formulas while they are typed: what is wrong with them and where, and what can complete a word.
+//! Expressions and formulas while they are typed: their errors with positions, and completions.
 
 use std::ops::Range;
 
@@ -9,32 +9,32 @@ use orogen::value::Value;
 use super::document::Document;
 use super::edit::Edit;
 
-/// Which expression of a recipe.
+/// The position of an expression in a recipe.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Site {
     /// The node.
     pub node: String,
     /// The parameter.
     pub key: String,
-    /// Whether it is a formula in place of a number, which begins with `=` in the recipe.
+    /// Whether it is a formula for a number, which begins with `=` in the recipe.
     pub is_formula: bool,
 }
 
-/// What is wrong with an expression.
+/// An error in an expression.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExpressionDiagnostic {
-    /// Where, in bytes of the expression.
+    /// The position, in bytes of the expression.
     pub span: Range<usize>,
-    /// What, and what to do.
+    /// The error, and how to fix it.
     pub message: String,
 }
 
-/// A word that can stand in an expression.
+/// A word that an expression may contain.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Word {
     /// The word.
     pub text: String,
-    /// What it is.
+    /// Its description.
     pub about: String,
 }
 
@@ -46,10 +46,10 @@ impl Site {
         Edit::Param { node: self.node.clone(), key: self.key.clone(), value: Value::Text(text) }
     }
 
-    /// Checks an expression in place of the one in the recipe.
+    /// Checks an expression that replaces the one in the recipe.
     ///
     /// # Errors
-    /// What is wrong, and where.
+    /// The error and its position.
     pub fn check(&self, document: &Document, text: &str) -> Result<(), ExpressionDiagnostic> {
         let expression = Expression::from(text);
         if let Some(error) = expression.error() {
@@ -63,12 +63,12 @@ impl Site {
             Err(error) => error,
         };
         let message = error.diagnostics().first().map_or_else(|| error.to_string(), |first| first.message.clone());
-        // The field tells which node and parameter it is.
+        // The message need not name the node and parameter, because the field shows them.
         let message = match message.split_once("`: ") {
             Some((at, what)) if at.starts_with(&format!("node `{}`", self.node)) => what.to_owned(),
             _ => message,
         };
-        // The name that the message tells of, otherwise all of it.
+        // The name that the message mentions, otherwise the whole expression.
         let has = |part: &str| message.contains(&format!("`{part}`"));
         let is_meant =
             |name: &&String| has(name) || name.split_once('.').is_some_and(|(node, layer)| has(node) && has(layer));
@@ -77,7 +77,7 @@ impl Site {
         Err(ExpressionDiagnostic { span: visible(text, span), message })
     }
 
-    /// The words that can stand in the expression: functions, parameters, and, unless it is a formula, nodes and their
+    /// The words that the expression may contain: functions, parameters, and, unless it is a formula, nodes and their
     /// layers.
     #[must_use]
     pub fn words(&self, recipe: &Recipe) -> Vec<Word> {
@@ -102,12 +102,12 @@ impl Site {
     }
 }
 
-/// Whether an expression can have a name as it is.
+/// Whether a name can be used in an expression without quoting.
 fn is_word(name: &str) -> bool {
     Expression::from(name).names() == [name]
 }
 
-/// A span that can be seen: at least one character, the last one at the end.
+/// A visible span: at least one character; at the end of the text, the last one.
 fn visible(text: &str, span: Range<usize>) -> Range<usize> {
     let end = text.len();
     let start = span.start.min(end);
@@ -124,7 +124,7 @@ fn is_part(c: char) -> bool {
     c.is_alphanumeric() || matches!(c, '_' | '.')
 }
 
-/// Where a name stands in an expression, as a whole word.
+/// The position of a name in an expression, as a whole word.
 fn place_of(text: &str, name: &str) -> Option<Range<usize>> {
     text.match_indices(name).map(|(at, _)| at..at + name.len()).find(|span| {
         let before = text.get(..span.start).and_then(|before| before.chars().next_back());

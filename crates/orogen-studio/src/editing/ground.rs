@@ -8,7 +8,7 @@ use toml_edit::{Array, DocumentMut, Item, TableLike};
 
 use super::tables::set;
 
-/// What has colors.
+/// A kind of table with colors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ground {
     /// A table `[[surface]]`.
@@ -25,8 +25,8 @@ impl Ground {
         }
     }
 
-    /// The names of a recipe's surfaces or classes with their colors, in the order of the recipe: one, or those of a
-    /// gradient. Surfaces with a picture are left out.
+    /// Index, name and colors of a recipe's surfaces or classes, in the order of the recipe: one color, or the colors
+    /// of a gradient. Surfaces with a picture are omitted.
     #[must_use]
     pub fn of(self, recipe: &Recipe) -> Vec<(usize, String, Vec<Rgb>)> {
         match self {

@@ -1,6 +1,6 @@
-//! Groups of nodes. A node is in a group if its name begins with that of the group: `hills/noise` is in `hills`, and
-//! `hills/rocks/noise` in the group `rocks` within it. The nodes of a recipe that `[use.NAME]` includes are such a
-//! group, too.
+//! Groups of nodes. A node is in a group if its name begins with the name of the group: `hills/noise` is in `hills`,
+//! and `hills/rocks/noise` is in the group `rocks` within `hills`. The nodes of a recipe that `[use.NAME]` includes
+//! also form such a group.
 
 use std::collections::HashSet;
 
@@ -8,7 +8,7 @@ use orogen::recipe::Recipe;
 
 use super::names;
 
-/// The group of a node or of a group; empty at the top.
+/// The group that contains a node or a group; empty at the top level.
 #[must_use]
 pub fn group_of(name: &str) -> &str {
     name.rsplit_once('/').map_or("", |(group, _)| group)
@@ -20,20 +20,20 @@ pub fn own_name(name: &str) -> &str {
     name.rsplit_once('/').map_or(name, |(_, own)| own)
 }
 
-/// A name in a group.
+/// The full name of `name` in a group.
 #[must_use]
 pub fn within(group: &str, name: &str) -> String {
     if group.is_empty() { name.to_owned() } else { format!("{group}/{name}") }
 }
 
-/// What follows the name of a group in a name; `None` if it is not in the group. Everything is in the empty group.
+/// The part of a name after the name of a group; `None` if it is not in the group. The empty group contains everything.
 #[must_use]
 pub fn rest<'a>(name: &'a str, group: &str) -> Option<&'a str> {
     if group.is_empty() { Some(name) } else { name.strip_prefix(group)?.strip_prefix('/') }
 }
 
-/// The group directly within `group` that a node is in, with its whole name; `None` if it is directly in `group`, or
-/// outside.
+/// The full name of the group directly within `group` that contains a node; `None` if the node is directly in `group`,
+/// or outside.
 #[must_use]
 pub fn inner<'a>(name: &'a str, group: &str) -> Option<&'a str> {
     let rest = rest(name, group)?;
@@ -54,7 +54,7 @@ pub fn is_group(recipe: &Recipe, group: &str) -> bool {
     !group.is_empty() && recipe.nodes().iter().any(|named| rest(&named.name, group).is_some())
 }
 
-/// The group whose nodes are exactly these; the outermost, if groups are alone in others.
+/// The group whose nodes are exactly these; the outermost one, if groups contain nothing but another group.
 #[must_use]
 pub fn of_selection(recipe: &Recipe, selected: &[String]) -> Option<String> {
     let first = selected.first()?;
@@ -67,7 +67,7 @@ pub fn of_selection(recipe: &Recipe, selected: &[String]) -> Option<String> {
     ends.into_iter().find(is_whole).map(str::to_owned)
 }
 
-/// The innermost group that all of some nodes are in.
+/// The innermost group that contains all of these nodes.
 #[must_use]
 pub fn common<'a>(mut names: impl Iterator<Item = &'a str>) -> &'a str {
     let mut common = names.next().map_or("", group_of);
@@ -79,7 +79,7 @@ pub fn common<'a>(mut names: impl Iterator<Item = &'a str>) -> &'a str {
     common
 }
 
-/// A name for a group within `group` that no node and no group has.
+/// A name for a group within `group` that no node and no other group has.
 #[must_use]
 pub fn free(recipe: &Recipe, group: &str, name: &str) -> String {
     let nodes = || recipe.nodes().iter().map(|named| named.name.as_str());
@@ -88,7 +88,7 @@ pub fn free(recipe: &Recipe, group: &str, name: &str) -> String {
     within(group, &names::free(name, &taken))
 }
 
-/// The names that change where nodes become a group: from and to.
+/// The renames that put nodes into a group: old and new names.
 #[must_use]
 pub fn grouped(nodes: &[String], name: &str) -> Vec<(String, String)> {
     let outer = common(nodes.iter().map(String::as_str));
@@ -96,12 +96,12 @@ pub fn grouped(nodes: &[String], name: &str) -> Vec<(String, String)> {
     nodes.iter().filter_map(moved).collect()
 }
 
-/// The names that change where a group is dissolved.
+/// The renames that dissolve a group.
 #[must_use]
 pub fn ungrouped(recipe: &Recipe, group: &str) -> Vec<(String, String)> {
     let inside = members(recipe, group);
     let outer = group_of(group);
-    // Names, and groups, that are there already stay as they are.
+    // Existing names and groups outside are not changed.
     let others = recipe.nodes().iter().map(|named| named.name.as_str()).filter(|name| rest(name, group).is_none());
     let mut taken: HashSet<String> = HashSet::new();
     for name in others.filter_map(|name| rest(name, outer)) {
@@ -113,7 +113,7 @@ pub fn ungrouped(recipe: &Recipe, group: &str) -> Vec<(String, String)> {
     for name in inside {
         let Some(own) = rest(&name, group) else { continue };
         let (head, tail) = own.split_once('/').map_or((own, None), |(head, tail)| (head, Some(tail)));
-        // A node and a group of one name are different things.
+        // A node and a group with the same name are different.
         let head = format!("{head}{}", if tail.is_some() { "/" } else { "" });
         let known = heads.iter().find(|(known, _)| *known == head).map(|(_, to)| to.clone());
         let to = known.unwrap_or_else(|| {
@@ -128,7 +128,7 @@ pub fn ungrouped(recipe: &Recipe, group: &str) -> Vec<(String, String)> {
     all
 }
 
-/// The names that change with that of a group.
+/// The renames that rename a group.
 #[must_use]
 pub fn renamed(recipe: &Recipe, from: &str, to: &str) -> Vec<(String, String)> {
     let moved = |name: String| {

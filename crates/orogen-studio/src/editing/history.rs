@@ -1,27 +1,27 @@
 //! Undo and redo of texts.
 
-/// Bytes of former texts that are kept; the oldest are forgotten first.
+/// Maximum number of bytes of earlier texts; the oldest are dropped first.
 const LIMIT: usize = 64 << 20;
 
-/// A text, and the change that led to it.
+/// A text, and the change that produced it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Step {
     text: String,
-    /// What changed, as a key of the catalogue of texts; empty for the first one.
+    /// The change, as a key of the catalog of texts; empty for the first step.
     label: &'static str,
 }
 
-/// All texts of a document, of which one is current.
+/// All texts of a document, one of which is current.
 #[derive(Debug, Clone)]
 pub struct History {
     steps: Vec<Step>,
     at: usize,
-    /// The gesture that made the current step, while it goes on: further changes of it replace the step.
+    /// The gesture that made the current step, until it ends: its further changes replace the step.
     gesture: Option<String>,
 }
 
 impl History {
-    /// The history of a text that has just been opened.
+    /// The history of a newly opened text.
     #[must_use]
     pub fn new(text: String) -> History {
         History { steps: vec![Step { text, label: "" }], at: 0, gesture: None }
@@ -33,8 +33,8 @@ impl History {
         &self.steps[self.at].text
     }
 
-    /// Makes a text the current one. Changes of one gesture, such as the drag of a slider, are one step: they have the
-    /// same name, and nothing came between them. What was undone is forgotten.
+    /// Makes a text the current one. Successive changes with the same gesture name, such as the drag of a slider, are
+    /// one step. Undone steps are dropped.
     pub fn push(&mut self, text: String, label: &'static str, gesture: Option<&str>) {
         if text == self.text() {
             return;
@@ -52,29 +52,29 @@ impl History {
         self.forget();
     }
 
-    /// Ends the current gesture: the next change is a step of its own.
+    /// Ends the current gesture: the next change starts a new step.
     pub fn end_gesture(&mut self) {
         self.gesture = None;
     }
 
-    /// What would be undone, as a key of the catalogue.
+    /// The change that undo would revert, as a key of the catalog.
     #[must_use]
     pub fn undo_label(&self) -> Option<&'static str> {
         (self.at > 0).then(|| self.steps[self.at].label)
     }
 
-    /// What would be redone, as a key of the catalogue.
+    /// The change that redo would make, as a key of the catalog.
     #[must_use]
     pub fn redo_label(&self) -> Option<&'static str> {
         self.steps.get(self.at + 1).map(|step| step.label)
     }
 
-    /// Goes back by a step; false if there is none.
+    /// Goes back by one step; false if there is none.
     pub fn undo(&mut self) -> bool {
         self.go(self.at.checked_sub(1))
     }
 
-    /// Goes forward by a step; false if there is none.
+    /// Goes forward by one step; false if there is none.
     pub fn redo(&mut self) -> bool {
         self.go(Some(self.at + 1).filter(|at| *at < self.steps.len()))
     }
@@ -86,7 +86,7 @@ impl History {
         true
     }
 
-    /// Forgets the oldest steps beyond the limit, but not the current one.
+    /// Drops the oldest steps beyond the limit, but not the current one.
     fn forget(&mut self) {
         let mut bytes: usize = self.steps.iter().map(|step| step.text.len()).sum();
         while bytes > LIMIT && self.at > 0 {
@@ -128,7 +128,7 @@ mod tests {
         assert_eq!(history.text(), "3");
         assert!(history.undo());
         assert_eq!(history.text(), "0");
-        // After an undo the same gesture begins a new step.
+        // After an undo, the same gesture starts a new step.
         history.push("5".into(), "value", Some("slider"));
         history.undo();
         assert_eq!(history.text(), "0");

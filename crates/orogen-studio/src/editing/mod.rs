@@ -1,4 +1,4 @@
-//! The recipe that is edited: its text, what the text means, edits that keep comments, and undo.
+//! The edited recipe: its text, the parsed recipe, edits that keep comments, and undo.
 
 pub mod brush;
 pub mod document;

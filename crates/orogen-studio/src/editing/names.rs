@@ -2,16 +2,16 @@
 
 use std::collections::HashSet;
 
-/// The number of groups within each other, and the node in them.
+/// Maximum number of parts of a name: nested groups, and the node in them.
 const DEEPEST: usize = 17;
 
-/// A name that is not taken: `name` itself, otherwise with a number from 2 on.
+/// A name that is not taken: `name` itself, otherwise with a number from 2.
 #[must_use]
 pub fn free(name: &str, taken: &HashSet<&str>) -> String {
     if !taken.contains(name) {
         return name.to_string();
     }
-    // "hills2" continues as "hills3".
+    // "hills2" is followed by "hills3".
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
     let stem = if stem.is_empty() { name } else { stem };
     let mut n = 2_u64;
@@ -24,14 +24,14 @@ pub fn free(name: &str, taken: &HashSet<&str>) -> String {
     }
 }
 
-/// The name of a new node of an op: that of the op, which is a valid name in expressions.
+/// The name for a new node of an op: the name of the op, made valid for expressions.
 #[must_use]
 pub fn of_op(op: &str) -> String {
     op.rsplit('.').next().unwrap_or(op).replace('-', "_")
 }
 
-/// Why a node or a group cannot have a name, as a key of the catalogue of texts. A `/` stands between a group and what
-/// is in it.
+/// Why a node or a group cannot have a name, as a key of the catalog of texts. A `/` separates a group from its
+/// content.
 #[must_use]
 pub fn fault(name: &str) -> Option<&'static str> {
     let is_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');

@@ -1,33 +1,33 @@
-//! Where a recipe refers to nodes by their names.
+//! The references of a recipe to nodes by name.
 
 use orogen::node::Node;
 use toml_edit::{Array, DocumentMut, Item, TableLike, Value};
 
-/// Where a reference stands.
+/// The kind of position of a reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Site {
     /// An input that its op requires, or a name in an expression.
     Required,
-    /// An input that may be left out, a mask, or a condition.
+    /// An optional input, a mask, or a condition.
     Optional,
     /// An output.
     Output,
 }
 
-/// What becomes of a reference.
+/// A change of a reference.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Change {
-    /// It stays.
+    /// Keeps it.
     Keep,
-    /// Another node or layer.
+    /// Replaces it by another node or layer.
     Name(String),
-    /// A number.
+    /// Replaces it by a number.
     Number(f64),
-    /// It is removed with its key.
+    /// Removes it with its key.
     Remove,
 }
 
-/// Calls a function with each reference in a document, and does what it returns.
+/// Calls a function with each reference in a document, and applies the change that it returns.
 pub fn change(document: &mut DocumentMut, of: &mut dyn FnMut(Site, &str) -> Change) {
     if let Some(nodes) = document.get_mut("nodes").and_then(Item::as_table_like_mut) {
         for (_, node) in nodes.iter_mut() {
@@ -67,7 +67,7 @@ pub fn change(document: &mut DocumentMut, of: &mut dyn FnMut(Site, &str) -> Chan
     }
 }
 
-/// Changes the references that are values of a table's keys.
+/// Changes the references among the values of a table's keys.
 fn change_keys(
     table: &mut dyn TableLike,
     site: &dyn Fn(&str) -> Option<Site>,

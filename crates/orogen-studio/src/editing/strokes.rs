@@ -5,25 +5,25 @@ use toml_edit::{Array, DocumentMut, Item, Table, Value};
 
 use super::tables::{add_node, node, set, top, value_of};
 
-/// The op whose strokes are painted.
+/// The op that paints strokes.
 pub const OP: &str = "paint";
 
 /// The parameter with the strokes.
 const STROKES: &str = "strokes";
 
-/// Where the first stroke puts the node that it makes.
+/// How a node that is created by its first stroke is connected.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Placement {
-    /// Nothing reads it.
+    /// No node reads it.
     Alone,
-    /// It is the mask of this node.
+    /// It becomes the mask of this node.
     MaskOf(String),
-    /// Its background is what this output read, and the output reads it.
+    /// Its background is what this output read before, and the output reads the new node.
     Over(String),
 }
 
-/// Writes stroke number `at`, from 0, of a node: a new one at the end, or another form of the last one. A node that is
-/// not there is made.
+/// Writes stroke number `at`, from 0, of a node: a new one at the end, or another form of the last one. A node that
+/// does not exist is created.
 pub(super) fn write(
     document: &mut DocumentMut,
     name: &str,
@@ -43,7 +43,7 @@ pub(super) fn write(
     match own.entry(STROKES).or_insert_with(|| Item::Value(Array::new().into())) {
         Item::Value(Value::Array(list)) if list.len() == at + 1 => drop(list.replace(at, value)),
         Item::Value(Value::Array(list)) => {
-            // A line for each.
+            // One line per stroke.
             value.decor_mut().set_prefix("\n  ");
             list.push_formatted(value);
             list.set_trailing("\n");

@@ -1,18 +1,18 @@
-//! Tables of a TOML document that is changed in place, so that comments and order stay.
+//! Tables of a TOML document that is changed in place, so that comments and order are kept.
 
 use orogen::value::Value;
 use toml_edit::{DocumentMut, Item, Table, TableLike};
 
-/// The table of this name in another one, if it is there.
+/// The table with this name in another table, if it exists.
 pub fn table<'a>(parent: &'a mut dyn TableLike, key: &str) -> Option<&'a mut dyn TableLike> {
     parent.get_mut(key)?.as_table_like_mut()
 }
 
-/// The table of this name at the top of a document; it is made if it is missing.
+/// The top-level table with this name; it is created if it does not exist.
 pub fn top<'a>(document: &'a mut DocumentMut, key: &str) -> Option<&'a mut dyn TableLike> {
     let item = document.entry(key).or_insert_with(|| {
         let mut table = Table::new();
-        // `[nodes]` need not be written: `[nodes.NAME]` says it.
+        // `[nodes]` need not be written, because `[nodes.NAME]` implies it.
         table.set_implicit(key != "outputs" && key != "world");
         Item::Table(table)
     });
@@ -37,12 +37,12 @@ pub fn add_node(document: &mut DocumentMut, name: &str, mut own: Table) -> Resul
     }
 }
 
-/// A value as one of the document; `None` if it cannot be written.
+/// Converts a value for the document; `None` if it cannot be written.
 pub fn value_of(value: &Value) -> Option<toml_edit::Value> {
     value.to_toml().parse().ok()
 }
 
-/// Sets a key. The comment beside a value stays.
+/// Sets a key. A comment after its value is kept.
 pub fn set(table: &mut dyn TableLike, key: &str, mut value: toml_edit::Value) {
     match table.get_mut(key).and_then(Item::as_value_mut) {
         Some(old) => {

@@ -61,7 +61,7 @@ fn node(name: &str) -> Input {
     Input::Node(name.into())
 }
 
-/// Applies an edit, and checks that the text changes from `before` to `after` and nowhere else.
+/// Applies an edit, and checks that the text changes from `before` to `after`, and only there.
 fn check(edit: Edit, before: &str, after: &str) {
     let mut document = document();
     document.apply(&edit).unwrap_or_else(|error| panic!("{edit:?}: {error}"));
@@ -105,7 +105,7 @@ fn a_node_is_renamed_wherever_it_is_named() {
         .replace("moisture = \"damp\"", "moisture = \"wet\"")
         .replace("{ damp = {", "{ wet = {");
     assert_eq!(document.text().replace("{wet =", "{ wet ="), expect);
-    // An expression keeps its name for the node.
+    // An expression keeps its own name for the node.
     document.apply(&Edit::Rename { from: "hills".into(), to: "base".into() }).unwrap();
     assert!(document.text().contains("# The hills.\n[nodes.base]"), "{}", document.text());
     assert!(document.text().contains("hills = \"base\""), "{}", document.text());
@@ -202,7 +202,7 @@ fn a_broken_text_keeps_the_last_recipe() {
     assert!(document.is_valid());
 }
 
-/// Every parameter of every node of every preset can be set to its own value without a change of the recipe.
+/// Every parameter of every node of every preset can be set to its own value without changing the recipe.
 #[test]
 fn presets_survive_edits_of_all_their_parameters() {
     for preset in presets::all() {

@@ -1,7 +1,7 @@
-//! Lines with fewer points.
+//! Simplification of lines.
 
-/// The points of a line that it needs so that no point of the line is further than `tolerance` from the result (Douglas
-/// and Peucker 1973). Both ends stay.
+/// The points of a line that are needed so that no point of the line is further than `tolerance` from the result
+/// (Douglas and Peucker 1973). Both ends are kept.
 #[must_use]
 pub fn thinned(points: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     let mut is_kept = vec![false; points.len()];
@@ -25,7 +25,7 @@ pub fn thinned(points: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     points.iter().zip(is_kept).filter(|(_, is_kept)| *is_kept).map(|(point, _)| *point).collect()
 }
 
-/// The distance from the straight line between two points.
+/// The distance from the line segment between two points.
 pub(super) fn distance([[ax, ay], [bx, by]]: [[f64; 2]; 2], [x, y]: [f64; 2]) -> f64 {
     let (ux, uy) = (bx - ax, by - ay);
     let square = ux * ux + uy * uy;
@@ -43,7 +43,7 @@ mod tests {
         assert_eq!(thinned(&line, 0.01), [[0.0, 0.0], [49.0, 98.0]]);
         assert_eq!(thinned(&line[..1], 0.01), [[0.0, 0.0]]);
         assert_eq!(thinned(&[], 0.01), [[0.0; 2]; 0]);
-        // There and back again: the turn stays.
+        // There and back again: the turning point is kept.
         assert_eq!(thinned(&[[0.0, 0.0], [9.0, 0.0], [1.0, 0.0]], 0.5), [[0.0, 0.0], [9.0, 0.0], [1.0, 0.0]]);
     }
 

@@ -8,13 +8,13 @@ use orogen::value::Value;
 use super::document::Document;
 use super::edit::Edit;
 
-/// Variants that are shown.
+/// Maximum number of variants that are shown.
 pub const COUNT: usize = 9;
 
-/// What varies.
+/// The quantity that varies.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Varied {
-    /// The seed of the world, from the current one on.
+    /// The seed of the world, starting with the current one.
     Seed,
     /// A parameter of the recipe.
     Parameter(String),
@@ -28,7 +28,7 @@ pub enum Varied {
 }
 
 impl Varied {
-    /// What can vary: the seed, the parameters of the recipe, and the numbers of a node.
+    /// The quantities that can vary: the seed, the parameters of the recipe, and the numbers of a node.
     #[must_use]
     pub fn of(document: &Document, node: Option<&str>) -> Vec<Varied> {
         let recipe = document.recipe();
@@ -49,7 +49,8 @@ impl Varied {
         all
     }
 
-    /// The edits that lead to the variants, each with its value; fewer than [`COUNT`] if values are whole and close.
+    /// The edits that give the variants, each with its value; fewer than [`COUNT`] if values are whole and close
+    /// together.
     #[must_use]
     pub fn edits(&self, document: &Document) -> Vec<(String, Edit)> {
         let recipe = document.recipe();
@@ -97,7 +98,8 @@ fn numbers(node: &Node, key: &str) -> Vec<Value> {
     sweep(own, param.range, is_whole).into_iter().map(value).collect()
 }
 
-/// Values around one, from half of it to twice it, within a range; around 0 the range itself, or -1 to 1.
+/// Values from half of `own` to twice as much, within a range; if `own` is 0, values of the whole range, or from -1 to
+/// 1.
 fn sweep(own: f64, [low, high]: [f64; 2], is_whole: bool) -> Vec<f64> {
     let is_bounded = low.is_finite() && high.is_finite() && high - low <= 1e3;
     let [from, to] = match own {
@@ -108,7 +110,7 @@ fn sweep(own: f64, [low, high]: [f64; 2], is_whole: bool) -> Vec<f64> {
     let mut values: Vec<f64> = (0..COUNT)
         .map(|k| {
             let share = k as f64 / (COUNT - 1) as f64;
-            // Steps of equal ratio, with the value itself in the middle.
+            // Steps with equal ratios, with the value itself in the middle.
             let value = if own == 0.0 { from + (to - from) * share } else { from * libm::pow(4.0, share) };
             let value = if is_whole { value.round() } else { value };
             value.max(low).min(high)
@@ -141,7 +143,7 @@ mod tests {
                 for varied in Varied::of(&document, Some(&named.name)) {
                     for (value, edit) in varied.edits(&document) {
                         let mut variant = document.clone();
-                        // Some values contradict other parameters; they change nothing.
+                        // Some values contradict other parameters; then nothing changes.
                         if variant.apply(&edit).is_ok() {
                             assert!(variant.is_valid(), "{}: {varied:?} {value}", preset.name);
                         }

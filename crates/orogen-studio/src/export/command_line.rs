@@ -1,4 +1,4 @@
-//! Command lines that make the same file.
+//! Command lines that produce the same files as the dialog.
 
 use std::fmt::{self, Display};
 
@@ -9,7 +9,7 @@ pub struct CommandLine {
 }
 
 impl CommandLine {
-    /// `orogen COMMAND RECIPE`.
+    /// Creates the command line `orogen COMMAND RECIPE`.
     #[must_use]
     pub fn new(command: &str, recipe: &str) -> CommandLine {
         CommandLine { words: vec!["orogen".into(), command.into(), recipe.into()] }
@@ -24,20 +24,20 @@ impl CommandLine {
     pub fn option(&mut self, name: &str, value: impl Display) {
         let value = value.to_string();
         match value.starts_with('-') {
-            // It would be read as another option.
+            // A separate word would be read as another option.
             true => self.words.push(format!("--{name}={value}")),
             false => self.words.extend([format!("--{name}"), value]),
         }
     }
 
-    /// Adds an option with its value unless it is the default.
+    /// Adds an option with its value, unless it is the default.
     pub fn differing<T: PartialEq + Display>(&mut self, name: &str, value: T, default: &T) {
         if value != *default {
             self.option(name, value);
         }
     }
 
-    /// The words, as a program gets them.
+    /// The words, as a program receives them.
     #[must_use]
     pub fn words(&self) -> &[String] {
         &self.words
@@ -52,7 +52,7 @@ impl Display for CommandLine {
     }
 }
 
-/// A word of a command line, in quotes if a shell would read it otherwise.
+/// A word of a command line, quoted if a shell would not read it literally.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "_-./,:=@+%".contains(c);
     match !word.is_empty() && word.chars().all(is_plain) {

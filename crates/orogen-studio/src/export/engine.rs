@@ -17,28 +17,28 @@ use super::samples::part;
 use super::work::{Work, lines};
 use crate::preview::region::Region;
 
-/// The choices for an engine.
+/// The settings of an export for a game engine.
 #[derive(Debug, Clone)]
 pub struct EngineExport {
     /// The engine.
     pub target: &'static EngineTarget,
     /// The layer.
     pub layer: String,
-    /// Samples along a side, of each tile if there are several; `None` for as many as the world has.
+    /// Number of samples along a side, of each tile if there are several; `None` for as many as the world has.
     pub side: Option<usize>,
     /// Number of tiles, east and south.
     pub tiles: [usize; 2],
 }
 
 impl EngineExport {
-    /// The heights for the first engine.
+    /// An export of the heights for the first engine.
     #[must_use]
     pub fn new() -> Option<EngineExport> {
         let target = list::all().first().copied()?;
         Some(EngineExport { target, layer: HEIGHT.into(), side: None, tiles: [1, 1] })
     }
 
-    /// Another engine; what it does not support is left out.
+    /// Selects another engine; settings that it does not support are reset.
     pub fn set_target(&mut self, target: &'static EngineTarget) {
         self.target = target;
         self.side = self.side.filter(|side| target.sides.contains(side));
@@ -50,13 +50,14 @@ impl EngineExport {
         }
     }
 
-    /// The formats that the engine imports this layer from.
+    /// The formats from which the engine imports this layer.
     #[must_use]
     pub fn formats(&self) -> &'static [&'static str] {
         self.target.formats_of(&self.layer)
     }
 
-    /// The samples. A part of the world begins at its corner, and has a cell with which the engine's samples fill it.
+    /// The samples. A part of the world starts at its corner; its cell is chosen so that the engine's number of samples
+    /// fills it.
     fn samples(&self, region: Region, world: &WorldSpec) -> FrameSpec {
         let mut samples = FrameSpec::default();
         if self.tiles != [1, 1] {
@@ -91,11 +92,10 @@ impl EngineExport {
         }
     }
 
-    /// Makes the files. Returns a description with the values for the engine's import dialog.
+    /// Writes the files. Returns a description with the values for the engine's import dialog.
     ///
     /// # Errors
-    /// If the engine does not support what is chosen, or the export fails; then there are no files, or those which were
-    /// there.
+    /// If the engine does not support the settings, or the export fails; then existing files are unchanged.
     pub fn make(&self, mut work: Work, region: Region) -> Result<String> {
         let format = format_of(&work.path, self.formats())?;
         let job = EngineJob::new(self.target, format)
@@ -111,7 +111,7 @@ impl EngineExport {
     }
 }
 
-/// The format of a file, which must be one of these.
+/// The format of a file, which must be one of these names.
 fn format_of(path: &Path, names: &[&str]) -> Result<&'static orogen::export::Format> {
     let format = registry::of_path(path)?;
     match names.contains(&format.name) {

@@ -1,4 +1,4 @@
-//! Options as a dialog holds them: texts by their names.
+//! Options as held by a dialog: texts by name.
 
 use std::collections::BTreeMap;
 
@@ -7,19 +7,19 @@ use orogen::options::{OptionSpec, Options, ValueKind};
 
 use super::command_line::CommandLine;
 
-/// Options as texts, by their names; a switch has an empty one.
+/// Options as texts by name; a switch has an empty text.
 pub type Given = BTreeMap<&'static str, String>;
 
-/// Options that are other names for a choice of another one, so that a dialog needs no field for them.
+/// Options that duplicate a choice of another option, so that a dialog needs no field for them.
 pub const WITHOUT_FIELD: [&str; 1] = ["no-shade"];
 
-/// Whether an option applies beside the others that are given.
+/// Whether an option applies together with the other given options.
 #[must_use]
 pub fn applies(spec: &OptionSpec, specs: &[OptionSpec], given: &Given) -> bool {
     spec.applies(specs, |other| given.get(other.name).cloned())
 }
 
-/// The given options that apply; others stay in the dialog for when they do.
+/// The given options that apply; others stay in the dialog until they apply.
 fn applying<'a>(
     specs: &'static [OptionSpec],
     given: &'a Given,
@@ -28,7 +28,7 @@ fn applying<'a>(
     specs.iter().filter_map(value).filter(|(spec, _)| applies(spec, specs, given))
 }
 
-/// The options, as the library takes them.
+/// Converts the options for the library.
 ///
 /// # Errors
 /// If a value is not valid.

@@ -26,7 +26,7 @@ impl Kind {
         (Kind::Tilemap, "export.kind_tilemap"),
     ];
 
-    /// What its file is called behind the name of the recipe, so that no kind replaces the file of another one.
+    /// The suffix of its file name after the name of the recipe, so that no kind replaces the file of another one.
     #[must_use]
     pub fn suffix(self) -> &'static str {
         match self {
@@ -37,7 +37,7 @@ impl Kind {
         }
     }
 
-    /// Whether it makes a folder of files.
+    /// Whether the output is a folder of files.
     #[must_use]
     pub fn is_folder(self) -> bool {
         self == Kind::Tilemap

@@ -17,14 +17,14 @@ use super::samples::Samples;
 use super::work::{Work, lines};
 use crate::preview::region::Region;
 
-/// The choices of a layer.
+/// The settings of an export of a layer or a mesh.
 #[derive(Debug, Clone)]
 pub struct LayerExport {
     /// The format.
     pub format: &'static Format,
     /// The layer.
     pub layer: String,
-    /// Samples along the longer side; `None` for the world's own cell.
+    /// Number of samples along the longer side; `None` for the world's own cell.
     pub size: Option<usize>,
     /// Options of the format.
     pub options: Given,
@@ -32,19 +32,19 @@ pub struct LayerExport {
     pub layer_options: Given,
 }
 
-/// The option of meshes for their precision.
+/// The option for the precision of meshes.
 const MAX_ERROR: &str = "max-error";
 
 impl LayerExport {
-    /// The heights in a format.
+    /// An export of the heights in a format.
     #[must_use]
     pub fn new(format: &'static Format) -> LayerExport {
         LayerExport { format, layer: HEIGHT.into(), size: None, options: Given::new(), layer_options: Given::new() }
     }
 
-    /// Another format: options that it lacks are dropped. A layer that it cannot hold becomes the heights. A mesh gets
-    /// few triangles: its error is a round number of metres near a thousandth of `relief`, the difference of the
-    /// highest and the lowest height.
+    /// Selects another format and drops options that it lacks. If it cannot hold the layer, the heights are selected. A
+    /// mesh gets few triangles: its error is a round number of metres near a thousandth of `relief`, the difference
+    /// between the highest and the lowest height.
     pub fn set_format(&mut self, format: &'static Format, relief: Option<f64>) {
         let was_mesh = self.format.knows(MAX_ERROR);
         self.format = format;
@@ -57,7 +57,7 @@ impl LayerExport {
         }
     }
 
-    /// Another layer: options that it lacks are dropped.
+    /// Selects another layer and drops options that it lacks.
     pub fn set_layer(&mut self, layer: &str) {
         self.layer = layer.to_owned();
         let known = layer_options(layer);
@@ -84,10 +84,10 @@ impl LayerExport {
         given::words(layer_options(&self.layer), &self.layer_options, line);
     }
 
-    /// Makes the file. Returns a description.
+    /// Writes the file. Returns a description.
     ///
     /// # Errors
-    /// If an option is not valid, or the export fails; then there is no file, or that which was there.
+    /// If an option is not valid, or the export fails; then an existing file is unchanged.
     pub fn make(&self, mut work: Work, region: Region) -> Result<String> {
         let job = self.job()?;
         job.prepare(&mut work.recipe)?;
@@ -100,7 +100,7 @@ impl LayerExport {
     }
 }
 
-/// The layers of a recipe that a format holds: its outputs, layers derived from the heights, and vector features.
+/// The layers of a recipe that a format can hold: its outputs, layers derived from the heights, and vector features.
 #[must_use]
 pub fn layers(format: &Format, recipe: &Recipe) -> Vec<String> {
     let mut names: Vec<String> = recipe.outputs().map(str::to_owned).collect();
@@ -119,7 +119,7 @@ pub fn layer_options(layer: &str) -> &'static [OptionSpec] {
     derived::named(layer).map_or(&[], |derived| (derived.options)())
 }
 
-/// Whether a format holds a layer by its kind.
+/// Whether a format can hold a layer of this kind.
 fn holds(format: &Format, layer: &str) -> bool {
     match (derived::named(layer), features::named(layer)) {
         (Some(derived), _) => derived.nature() == Nature::Numbers || format.channels > 1,
@@ -128,24 +128,24 @@ fn holds(format: &Format, layer: &str) -> bool {
     }
 }
 
-/// The nearest of 1, 2 and 5 times a power of ten.
+/// The nearest number that is 1, 2 or 5 times a power of ten.
 fn round(value: f64) -> f64 {
     let power = libm::pow(10.0, libm::log10(value.max(1e-3)).floor());
     let nearest = [1.0, 2.0, 5.0, 10.0].into_iter().map(|step| step * power);
     let rounded = nearest.min_by(|a, b| (a - value).abs().total_cmp(&(b - value).abs())).unwrap_or(1.0);
-    // Without the rounding errors of powers.
+    // Avoids rounding errors of powers.
     format!("{rounded:.0e}").parse().unwrap_or(rounded)
 }
 
 /// The format for the extension of a file.
 ///
 /// # Errors
-/// If there is none.
+/// If there is no such format.
 pub fn format_of(path: &Path) -> Result<&'static Format> {
     registry::of_path(path)
 }
 
-/// The error of an ending that a kind of export does not have.
+/// The error for an extension that a kind of export does not support.
 pub(super) fn ending(path: &Path, what: &str, endings: &[&str]) -> Error {
     let message = format!("{}: {what} is a .{}; name a file that ends so", path.display(), endings.join(" or ."));
     Error::new(ErrorKind::Request, message)
@@ -162,7 +162,7 @@ mod tests {
         export.set_layer("normal");
         export.set_format(named("glb"), Some(2600.0));
         assert_eq!((export.layer.as_str(), export.options.get("max-error").map(String::as_str)), ("height", Some("2")));
-        // The own choice stays in another kind of mesh.
+        // A value that the user chose is kept for another kind of mesh.
         export.options.insert("max-error", "7".into());
         export.set_format(named("obj"), Some(2600.0));
         assert_eq!(export.options.get("max-error").map(String::as_str), Some("7"));

@@ -13,29 +13,29 @@ use super::samples::Samples;
 use super::work::{Work, lines};
 use crate::preview::region::Region;
 
-/// The choices of a map sheet.
+/// The settings of an export of a map sheet.
 #[derive(Debug, Clone)]
 pub struct MapExport {
     /// The kind of file.
     pub format: SheetFormat,
-    /// Samples along the longer side; `None` for the world's own cell.
+    /// Number of samples along the longer side; `None` for the world's own cell.
     pub samples: Option<usize>,
     /// The options of [`MapJob::OPTIONS`].
     pub options: Given,
-    /// The heading that a command line gives by itself.
+    /// The default heading of the command.
     pub own_title: String,
     /// Whether the world is a file of heights.
     pub is_place: bool,
 }
 
 impl MapExport {
-    /// A picture of the heights.
+    /// An export as a picture of the heights.
     #[must_use]
     pub fn new(title: &str, is_place: bool) -> MapExport {
         MapExport { format: SheetFormat::Png, samples: None, options: Given::new(), own_title: title.into(), is_place }
     }
 
-    /// The layers of a recipe that a map can show: those of one channel.
+    /// The layers of a recipe that a map can show: layers with one channel.
     #[must_use]
     pub fn layers(recipe: &Recipe) -> Vec<String> {
         let mut names: Vec<String> = recipe.outputs().map(str::to_owned).collect();
@@ -56,10 +56,10 @@ impl MapExport {
         Samples::of(region, self.samples, world).unsized_for(world, line);
     }
 
-    /// Makes the file. Returns a description.
+    /// Writes the file. Returns a description.
     ///
     /// # Errors
-    /// If options are not valid, or the export fails; then there is no file, or that which was there.
+    /// If options are not valid, or the export fails; then an existing file is unchanged.
     pub fn make(&self, mut work: Work, region: Region) -> Result<String> {
         let options = given::read(MapJob::OPTIONS, &self.options)?;
         let mut job = MapJob::new(self.format).with_title(&self.own_title).with_options(&options)?;

@@ -1,7 +1,7 @@
-//! Exports: what is chosen in the dialog, the command line that makes the same file, and the work.
+//! Exports: the settings of the dialog, the command line that makes the same file, and the work.
 //!
-//! An [`Export`](request::Export) holds the choices of each [kind](kind::Kind). Files are made by the same jobs of the
-//! library as those of the command line, so they have the same bytes.
+//! An [`Export`](request::Export) holds the settings of each [kind](kind::Kind). Files are made by the same jobs of the
+//! library as in the command-line program, so they have the same bytes.
 
 pub mod command_line;
 pub mod engine;

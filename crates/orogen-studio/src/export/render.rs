@@ -10,10 +10,10 @@ use super::samples::Samples;
 use super::work::{Work, lines};
 use crate::preview::region::Region;
 
-/// The choices of a rendered picture.
+/// The settings of an export of a rendered picture.
 #[derive(Debug, Clone, Default)]
 pub struct RenderExport {
-    /// Samples of the land along its longer side; `None` for the world's own cell.
+    /// Number of samples of the land along its longer side; `None` for the world's own cell.
     pub samples: Option<usize>,
     /// The options of [`RenderJob::OPTIONS`].
     pub options: Given,
@@ -26,10 +26,10 @@ impl RenderExport {
         Samples::of(region, self.samples, world).unsized_for(world, line);
     }
 
-    /// Makes the file. Returns a description.
+    /// Writes the file. Returns a description.
     ///
     /// # Errors
-    /// If options are not valid, or the export fails; then there is no file, or that which was there.
+    /// If options are not valid, or the export fails; then an existing file is unchanged.
     pub fn make(&self, mut work: Work, region: Region) -> Result<String> {
         if !work.path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
             return Err(ending(&work.path, "a render", &["png"]));

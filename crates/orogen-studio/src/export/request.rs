@@ -1,4 +1,4 @@
-//! An export: its kind, the choices of each kind, and the file.
+//! An export: its kind, the settings of each kind, and the file.
 
 use std::path::{Path, PathBuf};
 
@@ -17,10 +17,10 @@ use super::tilemap::TilemapExport;
 use super::work::Work;
 use crate::preview::region::Region;
 
-/// What is to be exported. The choices of each kind stay while another kind is chosen.
+/// An export. The settings of each kind are kept while another kind is selected.
 #[derive(Debug, Clone)]
 pub struct Export {
-    /// The chosen kind.
+    /// The selected kind.
     pub kind: Kind,
     /// A layer or a mesh.
     pub layer: LayerExport,
@@ -39,8 +39,8 @@ pub struct Export {
 }
 
 impl Export {
-    /// The heights of a part of a world as GeoTIFF, in a folder. `title` is the name of the recipe, and `is_place`
-    /// whether it is a file of heights.
+    /// An export of the heights of a part of a world as GeoTIFF to a folder. `title` is the name of the recipe, and
+    /// `is_place` says whether it is a file of heights.
     #[must_use]
     pub fn new(region: Region, title: &str, is_place: bool, folder: &Path) -> Option<Export> {
         let format = registry::named("tif").or(registry::all().first().copied())?;
@@ -62,18 +62,18 @@ impl Export {
         &self.path
     }
 
-    /// Another kind; the file gets its extension, and another name unless it was given one.
+    /// Selects another kind. The file gets its extension, and its default name unless the user has chosen a name.
     pub fn set_kind(&mut self, kind: Kind) {
         let usual = |kind: Kind| format!("{}{}", self.map.own_title, kind.suffix());
         if self.path.file_stem().is_some_and(|stem| *stem == *usual(self.kind)) {
-            // With an extension to replace: a title may have dots.
+            // The name gets an extension to replace, because a title may contain dots.
             self.path.set_file_name(format!("{}.file", usual(kind)));
         }
         self.kind = kind;
         self.set_extension();
     }
 
-    /// Gives the file the extension of what is chosen.
+    /// Sets the extension of the file for the current settings.
     pub fn set_extension(&mut self) {
         let extension = match self.kind {
             Kind::Layer => self.layer.format.name,
@@ -85,7 +85,7 @@ impl Export {
         self.path.set_extension(extension);
     }
 
-    /// Another file, as typed. Its extension chooses the format.
+    /// Sets the path of the file, as typed. Its extension selects the format.
     pub fn set_path(&mut self, path: &str) {
         self.path = PathBuf::from(path);
         match self.kind {
@@ -101,7 +101,7 @@ impl Export {
         }
     }
 
-    /// The command line that makes the same file. `recipe` is what it calls the recipe, whose world is `world`.
+    /// The command line that makes the same file. `recipe` is the argument for the recipe, and `world` is its world.
     #[must_use]
     pub fn command_line(&self, recipe: &str, world: &WorldSpec) -> CommandLine {
         let command = match self.kind {
@@ -122,10 +122,10 @@ impl Export {
         line
     }
 
-    /// Makes the files. `own` is the recipe's file. Returns a description.
+    /// Writes the files. `own` is the recipe's file. Returns a description.
     ///
     /// # Errors
-    /// If an option is not valid, or the export fails; then there is no file, or that which was there.
+    /// If an option is not valid, or the export fails; then an existing file is unchanged.
     pub fn run(&self, session: &Session, recipe: Recipe, own: Option<&Path>, progress: &Progress) -> Result<String> {
         let inputs = recipe.files().into_iter().chain(own.map(Path::to_path_buf)).collect();
         let work = Work { session, recipe, path: self.path.clone(), inputs, progress };

@@ -1,4 +1,4 @@
-//! An export that is being made.
+//! A running export.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use orogen::{Progress, Result, Session};
 use super::request::Export;
 use crate::preview::worker::Wake;
 
-/// An export that is being made.
+/// A running export.
 pub struct Running {
     progress: Progress,
     share: Arc<AtomicU32>,
@@ -39,25 +39,25 @@ impl Running {
         let (sender, result) = channel();
         let own_progress = progress.clone();
         session.start(move |session| {
-            // The dialog may be closed.
+            // The dialog may already be closed.
             let _ = sender.send(export.run(session, recipe, own.as_deref(), &own_progress));
             wake();
         })?;
         Ok(Running { progress, share, result })
     }
 
-    /// The share that is done, 0 to 1.
+    /// The completed share, 0 to 1.
     #[must_use]
     pub fn share(&self) -> f32 {
         self.share.load(Ordering::Relaxed) as f32 / 1000.0
     }
 
-    /// Asks the work to end.
+    /// Cancels the work.
     pub fn cancel(&self) {
         self.progress.cancel();
     }
 
-    /// What it has led to, once it has ended: a description of the file.
+    /// The result, once the export has ended: a description of the file. `None` while it runs.
     #[must_use]
     pub fn result(&self) -> Option<Result<String>> {
         self.result.try_recv().ok()

@@ -1,11 +1,11 @@
-//! Which samples of a world an export takes.
+//! The samples of a world that an export takes.
 
 use orogen::{Result, Window, World, WorldSpec};
 
 use super::command_line::CommandLine;
 use crate::preview::region::Region;
 
-/// Samples along a side of a part of a world, unless another number is chosen.
+/// Default number of samples along a side of a part of a world.
 pub const DEFAULT: usize = 1024;
 
 /// The samples of an export.
@@ -20,7 +20,7 @@ pub enum Samples {
 }
 
 impl Samples {
-    /// The samples of a part of a world; `size` is their number along the longer side.
+    /// The samples of a part of a world; `size` is the number along the longer side.
     #[must_use]
     pub fn of(region: Region, size: Option<usize>, world: &WorldSpec) -> Samples {
         match (region.part(world.size, size.unwrap_or(DEFAULT)), size) {
@@ -33,7 +33,7 @@ impl Samples {
     /// The window.
     ///
     /// # Errors
-    /// If the world is unbounded, and this is not a part.
+    /// If the world is unbounded, and these samples are not a part of it.
     pub fn window(self, world: &World) -> Result<Window> {
         match self {
             Samples::Own => world.full_window(world.recipe().world.cell),
@@ -42,7 +42,7 @@ impl Samples {
         }
     }
 
-    /// The options of a command that counts samples.
+    /// Adds the options for a command that counts samples.
     pub fn sized(self, line: &mut CommandLine) {
         match self {
             Samples::Own => {}
@@ -51,7 +51,7 @@ impl Samples {
         }
     }
 
-    /// The options of a command whose size is that of its picture.
+    /// Adds the options for a command whose size option is that of its picture.
     pub fn unsized_for(self, world: &WorldSpec, line: &mut CommandLine) {
         match (self, world.size) {
             (Samples::Fitting(size), Some([width, height])) => line.option("cell", width.max(height) / size as f64),
@@ -61,7 +61,7 @@ impl Samples {
     }
 }
 
-/// The options of a part: numbers are written so that they are read as the same ones.
+/// Adds the options for a part. Numbers are written so that they are read back exactly.
 pub fn part(window: &Window, line: &mut CommandLine) {
     let Window { x, y, width, height, cell } = *window;
     line.option("cell", cell);

@@ -1,4 +1,4 @@
-//! Files of each kind against the jobs of the library, and the command lines.
+//! Compares files of each kind with the jobs of the library and with the command lines.
 
 use std::path::Path;
 
@@ -36,7 +36,7 @@ fn export(kind: Kind, folder: &Path) -> Export {
     export
 }
 
-/// Chooses options.
+/// Sets options.
 fn give(given: &mut Given, options: &[(&'static str, &str)]) {
     given.extend(options.iter().map(|(name, text)| (*name, text.to_string())));
 }
@@ -75,7 +75,7 @@ fn an_engine_gets_what_it_imports_and_says_how() {
     let words = run(&export);
     assert!(words.contains("Heightmap Resolution 65 x 65") && words.starts_with("129 x 129 samples"), "{words}");
     assert_eq!(std::fs::metadata(folder.join("classic_1_1.r16")).unwrap().len(), 2 * 65 * 65);
-    // Weights are pictures.
+    // Weights are exported as pictures.
     export.engine.layer = "slope".into();
     export.set_extension();
     assert!(
@@ -86,7 +86,7 @@ fn an_engine_gets_what_it_imports_and_says_how() {
     export.set_path(&folder.join("a.r16").to_string_lossy());
     let error = export.run(&session(), recipe(), None, &Progress::none()).unwrap_err();
     assert!(error.to_string().contains("is a .png"), "{error}");
-    // A part is a square of a size that the engine has.
+    // A part becomes a square with a size that the engine supports.
     export.region = Region::Square { center: [100.0, 4000.0], side: 1500.0 };
     export.engine.layer = HEIGHT.into();
     (export.engine.tiles, export.engine.side) = ([1, 1], Some(33));
@@ -139,10 +139,10 @@ fn a_map_is_that_of_the_job() {
         names.display()
     );
     assert!(line(&export).ends_with(&end), "{}", line(&export));
-    // Its extension chooses the kind of file.
+    // The extension selects the kind of file.
     export.set_path(&folder.join("a.pdf").to_string_lossy());
     assert_eq!(export.map.format, SheetFormat::Pdf);
-    // What does not apply any more is left out: surfaces have no palette.
+    // Options that no longer apply are omitted: surfaces have no palette.
     give(&mut export.map.options, &[("palette", "swiss"), ("range", "3,1")]);
     assert!(!line(&export).contains("--range"), "{}", line(&export));
     export.map.options.remove("color");
@@ -222,20 +222,20 @@ fn command_lines_name_the_part_of_the_world() {
         line(&export),
         "orogen export classic --out 'my map'\\''s.png' --layer viewshed --size 300 --bits 8 --observer=-5,7"
     );
-    // Watersheds are samples in one format, and areas in another.
+    // Watersheds are samples in one format and areas in another.
     for (path, layers) in [("a.tif", ["watershed", "filled"]), ("a.geojson", ["watershed", "watersheds"])] {
         let format = registry::of_path(Path::new(path)).unwrap();
         let known = crate::export::layer::layers(format, &recipe());
         assert!(layers.iter().all(|layer| known.iter().any(|name| name == layer)), "{path}: {known:?}");
     }
-    // A name that was given stays.
+    // A name that the user has chosen is kept.
     export.set_kind(Kind::Render);
     assert_eq!(export.path(), Path::new("my map's.png"));
     export.set_kind(Kind::Layer);
     export.set_path("my map's.png");
     export.set_path("a.data");
     assert!(line(&export).contains("--out a.data --format png"), "{}", line(&export));
-    // A part of an unbounded world, and one that a bounded world ends.
+    // A part of an unbounded world, and a part that is cut off at the edge of a bounded world.
     export.layer.set_layer(HEIGHT);
     export.region = Region::Square { center: [1000.0, 500.0], side: 2000.0 };
     export.layer.size = Some(200);

@@ -12,7 +12,7 @@ use super::samples::Samples;
 use super::work::{Work, lines};
 use crate::preview::region::Region;
 
-/// The choices of a map of tiles.
+/// The settings of an export of a tilemap.
 #[derive(Debug, Clone)]
 pub struct TilemapExport {
     /// Cells along the longer side.
@@ -41,20 +41,20 @@ impl TilemapExport {
         given::words(TilemapJob::OPTIONS, &self.options, line);
     }
 
-    /// Makes the files. Returns a description.
+    /// Writes the files. Returns a description.
     ///
     /// # Errors
-    /// If there is no such tileset, or the export fails; then there are no files, or those which were there.
+    /// If there is no such tileset, or the export fails; then existing files are unchanged.
     pub fn make(&self, mut work: Work, region: Region) -> Result<String> {
         let job = TilemapJob::with_options(&given::read(TilemapJob::OPTIONS, &self.options)?)?;
         work.inputs.extend(job.files.iter().cloned());
         let layer = if work.recipe.outputs().any(|name| name == CLASS) { CLASS } else { HEIGHT };
-        // The classes of a recipe without any depend on the cell of the map.
+        // The classes of a recipe without its own classes depend on the cell of the map.
         let window = self.samples(region, &work.recipe.world).window(&work.open()?)?;
         job.prepare(&mut work.recipe, window.cell)?;
         let world = work.open()?;
         let written = job.to_folder(&world, &window, layer, (&work.path, &work.policy()), work.progress)?;
-        // The dialog names the folder itself.
+        // The dialog already shows the folder.
         let (words, folder) = (written.words(), format!("{}: ", work.path.display()));
         Ok(lines(words.strip_prefix(&folder).unwrap_or(&words), written.warning))
     }

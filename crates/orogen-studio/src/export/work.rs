@@ -1,4 +1,4 @@
-//! What an export works with.
+//! The inputs of an export.
 
 use std::path::PathBuf;
 
@@ -6,31 +6,31 @@ use orogen::io::file::{Output, OutputPolicy};
 use orogen::recipe::Recipe;
 use orogen::{Progress, Result, Session, World};
 
-/// What an export works with.
+/// The inputs of an export.
 pub struct Work<'a> {
     /// The session.
     pub session: &'a Session,
     /// The recipe.
     pub recipe: Recipe,
-    /// The file or folder that is made.
+    /// The output file or folder.
     pub path: PathBuf,
-    /// Files that are read, and therefore not replaced.
+    /// Files that are read, and are therefore not replaced.
     pub inputs: Vec<PathBuf>,
     /// The progress.
     pub progress: &'a Progress,
 }
 
 impl Work<'_> {
-    /// Which files may be replaced.
+    /// The policy for replacing files.
     #[must_use]
     pub fn policy(&self) -> OutputPolicy {
         OutputPolicy::default().protecting(&self.inputs)
     }
 
-    /// The file.
+    /// The output file.
     ///
     /// # Errors
-    /// If there is one that may not be replaced.
+    /// If an existing file may not be replaced.
     pub fn output(&self) -> Result<Output> {
         self.policy().output(&self.path)
     }
@@ -44,7 +44,7 @@ impl Work<'_> {
     }
 }
 
-/// A message with the warnings behind it, a line each.
+/// A message followed by warnings, one per line.
 #[must_use]
 pub fn lines(words: &str, notes: impl IntoIterator<Item = String>) -> String {
     let mut text = words.trim_end().to_owned();

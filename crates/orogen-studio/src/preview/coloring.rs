@@ -8,14 +8,14 @@ use orogen::recipe::Recipe;
 /// What the colors show.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Coloring {
-    /// The values of the layer, by the layer's own palette.
+    /// The values of the layer, in the layer's own palette.
     #[default]
     Own,
-    /// The values of the layer, by a palette of the program.
+    /// The values of the layer, in a built-in palette.
     Named(String),
-    /// The values of the layer, by a palette that is being edited.
+    /// The values of the layer, in a palette that is being edited.
     Edited(Arc<Palette>),
-    /// The surfaces of the ground: those of the recipe, or the standard ones.
+    /// The surfaces of the ground: those of the recipe, or the standard surfaces.
     Surfaces,
     /// The biomes of the recipe.
     Biomes,
@@ -34,7 +34,7 @@ impl Coloring {
         }
     }
 
-    /// Whether they show what covers the ground, in place of the values of the layer.
+    /// Whether they show the cover of the ground instead of the values of the layer.
     #[must_use]
     pub fn is_cover(&self) -> bool {
         matches!(self, Coloring::Surfaces | Coloring::Biomes | Coloring::Classes)

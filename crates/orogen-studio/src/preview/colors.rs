@@ -14,24 +14,24 @@ use super::coloring::Coloring;
 use super::legend::{Legend, STEPS};
 use super::statistics::range;
 
-/// How values become colors.
+/// How values are converted to colors.
 #[derive(Debug, Clone)]
 pub enum Colors {
     /// By a tint.
     Tint {
         /// The tint.
         tint: Tint,
-        /// Whether it is of the logarithms of the values.
+        /// Whether the tint applies to the logarithms of the values.
         log: bool,
     },
-    /// A color for each number.
+    /// One color for each number.
     Numbers(Vec<Rgb>),
 }
 
-/// The palette of layers without one of their own.
+/// The default palette of layers without their own palette.
 const LAYERS: &str = "viridis";
 
-/// Colors of numbers that have none of their own: hues apart from each other.
+/// Number of colors for numbers without their own color, with hues that are far apart.
 const HUES: usize = 24;
 
 impl Colors {
@@ -65,7 +65,7 @@ impl Colors {
         Colors::Tint { tint, log }
     }
 
-    /// What the colors of these values mean.
+    /// The legend of these colors for these values.
     #[must_use]
     pub fn legend(&self, values: &Grid) -> Legend {
         let Colors::Tint { tint, log } = self else { return Legend::Entries(Vec::new()) };
@@ -77,7 +77,7 @@ impl Colors {
         Legend::Ramp { ends, colors: (0..STEPS).map(|k| encoder.bytes(tint.at(at(k)))).collect(), log: *log }
     }
 
-    /// Colors without light, four bytes for each sample.
+    /// Colors without light, four bytes per sample.
     #[must_use]
     pub fn paint(&self, values: &Grid) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(4 * values.data().len());
@@ -100,7 +100,7 @@ impl Colors {
         bytes
     }
 
-    /// Colors with the relief of `heights`. `albedo` are those without.
+    /// Colors with the relief shading of `heights`; `albedo` is the colors without light.
     #[must_use]
     pub fn shade(&self, albedo: &[u8], heights: &Grid, sea_level: f64) -> Vec<u8> {
         let mut shaded = albedo.to_vec();
@@ -111,7 +111,7 @@ impl Colors {
     /// The painter of relief for these colors, fitted to heights.
     #[must_use]
     pub fn painter(&self, heights: &Grid, sea_level: f64) -> Painter {
-        // Other layers show no water of their own.
+        // Other layers do not show water.
         let tint = match self {
             Colors::Tint { tint, log: false } => tint.clone(),
             _ => Tint::fit(heights, f32::NEG_INFINITY),
@@ -133,7 +133,7 @@ pub fn palette(layer: &str, coloring: &Coloring) -> Option<Palette> {
     named::find(name).or(named::find(LAYERS)).map(named::Named::palette)
 }
 
-/// The logarithm of a value that spans orders of magnitude; that of what is not above 0 is none.
+/// The logarithm of a value that spans orders of magnitude; NaN if it is not above 0.
 fn logarithm(value: f32) -> f32 {
     if value > 0.0 { libm::log10f(value) } else { f32::NAN }
 }

@@ -6,11 +6,11 @@ use orogen::{Grid, Result, Window};
 
 use super::statistics::range;
 
-/// Most lines between the lowest and the highest height where the interval is not given.
+/// Maximum number of levels between the lowest and the highest height if the interval is not given.
 const MOST: usize = 25;
 
-/// Samples along the longer side of the grid that lines are traced on: finer ones would have more points than a window
-/// shows.
+/// Maximum number of samples along the longer side of the grid on which lines are traced. With finer grids, lines would
+/// have more points than a window can show.
 const FINEST: usize = 1024;
 
 /// Contour lines.
@@ -23,7 +23,7 @@ pub struct Contours {
 }
 
 impl Contours {
-    /// The contours of heights; `interval` 0 is a round one that suits them.
+    /// The contours of heights; with an `interval` of 0, a round interval is chosen from the range of heights.
     ///
     /// # Errors
     /// If there would be too many levels.
@@ -49,20 +49,20 @@ impl Contours {
     }
 }
 
-/// An interval, or a round one that suits a range of heights if it is 0.
+/// The interval, or if it is 0, a round interval that suits the range of heights.
 #[must_use]
 pub fn suiting(interval: f64, [low, high]: [f64; 2]) -> f64 {
     if interval > 0.0 { interval } else { round_interval(high - low, MOST) }
 }
 
-/// Every so many samples of a grid; `None` if that is all of them.
+/// Every `step`-th sample of a grid; `None` if that is all of them.
 fn thinned(grid: &Grid, step: usize) -> Option<Grid> {
     if step < 2 {
         return None;
     }
     let window = grid.window();
     let step_of = step as i64;
-    // Samples stay at their positions: the first one is at a multiple of the step.
+    // Samples keep their positions: the first one is at a multiple of the step.
     let skip = [window.x, window.y].map(|at| (-at).rem_euclid(step_of) as usize);
     let columns = window.width.checked_sub(skip[0])?.div_ceil(step);
     let rows = window.height.checked_sub(skip[1])?.div_ceil(step);

@@ -1,4 +1,4 @@
-//! Colors of what covers the ground: surfaces, biomes, terrain classes.
+//! Colors of the cover of the ground: surfaces, biomes, terrain classes.
 
 use orogen::export::{biome_cover, sheet_cover};
 use orogen::io::palette::color::Encoder;
@@ -12,17 +12,17 @@ use super::colors::{Colors, number};
 use super::failure;
 use super::legend::{Entry, Legend};
 
-/// Adds the nodes to a recipe that compute what covers the ground; call it before the world is opened.
+/// Adds the nodes to a recipe that compute the cover of the ground; call it before the world is opened.
 pub fn prepare(recipe: &mut Recipe, coloring: &Coloring) {
     if *coloring == Coloring::Surfaces {
         sheet_cover::prepare(recipe);
     }
 }
 
-/// Colors without light over the window of the heights, four bytes for each sample, and their legend.
+/// Colors without light over the window of the heights, four bytes per sample, and their legend.
 ///
 /// # Errors
-/// If the recipe has nothing of the kind, or the world fails.
+/// If the recipe has no cover of this kind, or the world fails.
 pub fn paint(world: &World, coloring: &Coloring, heights: &Grid, progress: &Progress) -> Result<(Vec<u8>, Legend)> {
     let recipe = world.recipe();
     match coloring {
@@ -90,5 +90,5 @@ fn surfaces(world: &World, heights: &Grid, progress: &Progress) -> Result<(Vec<u
     Ok((bytes, Legend::Entries(entries)))
 }
 
-/// The albedo of real ground is dark; a map shows it in more light.
+/// Factor for the albedo of the ground, which is dark; maps show it in more light.
 const BRIGHTER: f32 = 1.8;

@@ -10,20 +10,20 @@ use super::contours::Contours;
 use super::legend::Legend;
 use super::statistics::Statistics;
 
-/// What tells pictures apart: the request, the samples along the width, and the time.
+/// The identity of a picture: the request, the number of samples along the width, and the time.
 pub type Key = (u64, usize, u64);
 
-/// Memory of a sample in bytes.
+/// Memory per sample in bytes.
 const BYTES: u64 = 32;
 
-/// How good a picture is.
+/// The quality of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quality {
-    /// Of a draft of the recipe: the land differs in detail.
+    /// Made from a draft of the recipe; the land differs in detail.
     Draft,
-    /// Exact samples, and finer pictures follow.
+    /// Exact samples; finer pictures will follow.
     Coarse,
-    /// The finest that was asked for.
+    /// The finest requested picture.
     Fine,
 }
 
@@ -32,58 +32,58 @@ pub enum Quality {
 pub struct Frame {
     /// The number of the request.
     pub request: u64,
-    /// How good it is.
+    /// The quality.
     pub quality: Quality,
     /// The heights of the surface, in metres.
     pub heights: Arc<Grid>,
-    /// The layer that is colored, unless it is the surface.
+    /// The colored layer, unless it is the surface.
     pub values: Option<Arc<Grid>>,
-    /// What kind of quantity the colored layer is.
+    /// The kind of quantity of the colored layer.
     pub kind: LayerKind,
     /// The unit of the colored layer, or empty.
     pub unit: &'static str,
     /// Colors without light: red, green, blue and 255 for each sample, sRGB.
     pub albedo: Vec<u8>,
-    /// What the colors mean.
+    /// The legend of the colors.
     pub legend: Legend,
-    /// Colors with relief shading, as maps have them.
+    /// Colors with relief shading, like on maps.
     pub shaded: Vec<u8>,
-    /// Contour lines of the heights, if they are wanted.
+    /// Contour lines of the heights, if requested.
     pub contours: Option<Arc<Contours>>,
-    /// How much of the sun each sample sees, 0 to 255: two bytes for each sample, of the ground and of the surface of
+    /// How much of the sun each sample sees, 0 to 255. Two bytes per sample: for the ground, and for the surface of
     /// land and sea.
     pub light: Vec<u8>,
-    /// The height of the sea.
+    /// The sea level in metres.
     pub sea_level: f64,
-    /// Figures of the colored layer.
+    /// Statistics of the colored layer.
     pub statistics: Statistics,
-    /// The seconds since the request.
+    /// Seconds since the request.
     pub seconds: f64,
-    /// Its memory, which counts in the session's budget.
+    /// The memory of the picture, which counts towards the session's budget.
     pub memory: Arc<Reservation>,
 }
 
 impl Frame {
     /// Memory of a picture of a window while it is made, in bytes: heights, values, colors with and without light, the
-    /// light, and what makes them.
+    /// light, and intermediate data.
     #[must_use]
     pub fn memory(window: &Window) -> u64 {
         (window.width as u64).saturating_mul(window.height as u64).saturating_mul(BYTES)
     }
 
-    /// What tells it apart from others.
+    /// The identity of the picture.
     #[must_use]
     pub fn key(&self) -> Key {
         (self.request, self.window().width, self.seconds.to_bits())
     }
 
-    /// Its window.
+    /// The window.
     #[must_use]
     pub fn window(&self) -> &Window {
         self.heights.window()
     }
 
-    /// The layer that is colored.
+    /// The colored layer.
     #[must_use]
     pub fn shown(&self) -> &Grid {
         self.values.as_deref().unwrap_or(&self.heights)

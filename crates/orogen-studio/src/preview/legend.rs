@@ -1,42 +1,42 @@
-//! What the colors of a picture mean.
+//! The meaning of the colors of a picture.
 
 use orogen::io::palette::Rgb;
 
-/// What the colors of a picture mean.
+/// The meaning of the colors of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Legend {
     /// Colors of a range of values.
     Ramp {
         /// The values at its ends, in the unit of the layer.
         ends: [f32; 2],
-        /// Colors at even distances from one end to the other.
+        /// Evenly spaced colors from one end to the other.
         colors: Vec<Rgb>,
-        /// Whether even distances are even ratios.
+        /// Whether even distances correspond to even ratios.
         log: bool,
     },
-    /// Colors of things with names, the most frequent one first.
+    /// Named colors, the most frequent one first.
     Entries(Vec<Entry>),
 }
 
-/// A thing that has a color.
+/// A named color.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// Its color.
+    /// The color.
     pub color: Rgb,
-    /// Its share of the land, 0 to 1.
+    /// The share of the land, 0 to 1.
     pub share: f64,
 }
 
-/// Colors of a ramp.
+/// Number of colors of a ramp.
 pub const STEPS: usize = 64;
 
-/// Most things that a legend lists.
+/// Maximum number of entries of a legend.
 const MOST: usize = 12;
 
 impl Legend {
-    /// The legend of colors of numbers with names, of which there are so many samples.
+    /// The legend of named classes, with the number of samples of each.
     #[must_use]
     pub fn of_counts(classes: &[(&str, Rgb)], counts: &[u64]) -> Legend {
         let total = counts.iter().sum::<u64>().max(1) as f64;
@@ -55,7 +55,7 @@ impl Legend {
         Legend::Entries(entries)
     }
 
-    /// The position of a value on a ramp, 0 to 1 from its lower to its upper end; `None` beyond them, and on lists.
+    /// The position of a value on a ramp, 0 at its lower and 1 at its upper end; `None` outside, and for lists.
     #[must_use]
     pub fn place(&self, value: f32) -> Option<f32> {
         let Legend::Ramp { ends: [low, high], log, .. } = self else { return None };

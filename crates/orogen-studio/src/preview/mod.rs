@@ -1,4 +1,4 @@
-//! Pictures of a recipe while it is edited: coarse first, then finer, off the thread of the user interface.
+//! Pictures of a recipe while it is edited: first coarse, then finer, made outside of the thread of the user interface.
 
 pub mod coloring;
 pub mod colors;

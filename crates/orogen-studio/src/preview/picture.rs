@@ -18,7 +18,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Makes the picture of a layer over a window. Layers of heights have the colors of the land.
+    /// Makes the picture of a layer over a window. Layers of heights have the colors of land.
     ///
     /// # Errors
     /// If there is no such layer, or it cannot be computed.

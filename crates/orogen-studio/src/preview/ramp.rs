@@ -5,13 +5,13 @@ use orogen::io::palette::fitted::Fitted;
 use orogen::io::palette::palette::Position;
 use orogen::io::palette::{Palette, Rgb, Stop};
 
-/// A color ramp whose positions are all of one kind.
+/// A color ramp whose positions are all of the same kind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ramp {
     palette: Palette,
 }
 
-/// The fewest colors of a ramp.
+/// Minimum number of colors of a ramp.
 const FEWEST: usize = 2;
 
 impl Ramp {
@@ -24,7 +24,7 @@ impl Ramp {
         let is_ordered = palette.stops.is_sorted_by(|a, b| number(a.at) <= number(b.at));
         let is_ramp = is_one_kind && is_ordered && palette.stops.len() >= FEWEST;
         let mut palette = palette.clone();
-        // What is edited is as it is shown, whatever the relief.
+        // An edited ramp is used as shown, whatever the relief.
         palette.follows_relief = false;
         is_ramp.then_some(Ramp { palette })
     }
@@ -35,18 +35,18 @@ impl Ramp {
         &self.palette
     }
 
-    /// Another name.
+    /// Sets the name.
     pub fn rename(&mut self, name: &str) {
         name.clone_into(&mut self.palette.name);
     }
 
-    /// The unit of the positions: metres or that of the layer, or empty.
+    /// Whether the positions are values, in metres or in the unit of the layer.
     #[must_use]
     pub fn has_values(&self) -> bool {
         self.palette.stops.iter().any(|stop| matches!(stop.at, Position::Value(_)))
     }
 
-    /// The colors with their positions.
+    /// The colors and their positions.
     #[must_use]
     pub fn stops(&self) -> Vec<(f64, Rgb)> {
         self.palette.stops.iter().map(|stop| (number(stop.at), stop.color)).collect()
@@ -59,11 +59,11 @@ impl Ramp {
         [at(self.palette.stops.first()), at(self.palette.stops.last())]
     }
 
-    /// Colors at even distances from the first to the last one.
+    /// Evenly spaced colors from the first to the last one.
     #[must_use]
     pub fn colors(&self, count: usize) -> Vec<Rgb> {
         let [low, high] = self.ends();
-        // Positions that are shares are those of a range from 0 to 1, with the sea at 0.
+        // Positions that are shares refer to a range from 0 to 1, with the sea at 0.
         let sea = 0.0;
         let fitted = Fitted::new(&self.palette, low as f32, high as f32, sea);
         let encoder = Encoder::new();
@@ -71,14 +71,15 @@ impl Ramp {
         (0..count).map(|k| encoder.bytes(fitted.at(at(k) as f32))).collect()
     }
 
-    /// Another color.
+    /// Sets a color.
     pub fn set_color(&mut self, k: usize, color: Rgb) {
         if let Some(stop) = self.palette.stops.get_mut(k) {
             stop.color = color;
         }
     }
 
-    /// Another position, between those of its neighbors. The ends of ramps whose positions are no values stay.
+    /// Sets a position, limited to between its neighbors. The ends of ramps whose positions are not values are not
+    /// moved.
     pub fn set_position(&mut self, k: usize, at: f64) {
         let neighbor = |k: Option<usize>| k.and_then(|k| self.palette.stops.get(k)).map(|stop| number(stop.at));
         let (low, high) = (neighbor(k.checked_sub(1)), neighbor(Some(k + 1)));
@@ -92,7 +93,7 @@ impl Ramp {
         }
     }
 
-    /// Adds a color at a position within the ramp, with the color that is there. Returns its number.
+    /// Adds a color at a position within the ramp, with the color that the ramp has there. Returns its index.
     pub fn add(&mut self, at: f64) -> Option<usize> {
         let [low, high] = self.ends();
         let place = (at - low) / (high - low);
@@ -108,28 +109,28 @@ impl Ramp {
         Some(k)
     }
 
-    /// Removes a color. The first and the last one stay.
+    /// Removes a color. The first and the last color cannot be removed.
     pub fn remove(&mut self, k: usize) {
         if k > 0 && k + 1 < self.palette.stops.len() && self.palette.stops.len() > FEWEST {
             self.palette.stops.remove(k);
         }
     }
 
-    /// The same colors from the other end.
+    /// Reverses the order of the colors.
     pub fn reverse(&mut self) {
         let colors: Vec<Rgb> = self.palette.stops.iter().rev().map(|stop| stop.color).collect();
         self.palette.stops.iter_mut().zip(colors).for_each(|(stop, color)| stop.color = color);
     }
 }
 
-/// Colors among which that of a new one is looked for.
+/// Number of colors among which the color of a new stop is looked up.
 const STEPS: usize = 1024;
 
-/// The number of a position.
+/// The number in a position.
 fn number(at: Position) -> f64 {
     match at {
         Position::Value(at) | Position::Share(at) | Position::Sea(at) => at,
-        // Kinds that come later are refused where a ramp is made.
+        // Kinds that may be added later are rejected when a ramp is made.
         _ => f64::NAN,
     }
 }

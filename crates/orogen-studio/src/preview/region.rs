@@ -1,4 +1,4 @@
-//! The part of a world that is shown.
+//! The visible part of a world.
 
 use orogen::{Result, Window, World};
 
@@ -9,18 +9,18 @@ pub enum Region {
     Whole,
     /// A square.
     Square {
-        /// Its middle: metres east and south of the origin.
+        /// The center: metres east and south of the origin.
         center: [f64; 2],
-        /// The length of its sides in metres.
+        /// The length of the sides in metres.
         side: f64,
     },
 }
 
-/// The side of the square that is shown of an unbounded world at first, in its cells.
+/// Initial side of the square that is shown of an unbounded world, in cells.
 const CELLS: f64 = 1024.0;
 
 impl Region {
-    /// What is shown of a world at first.
+    /// The initial region of a world.
     #[must_use]
     pub fn of(size: Option<[f64; 2]>, cell: f64) -> Region {
         match size {
@@ -29,7 +29,7 @@ impl Region {
         }
     }
 
-    /// Its window with about `samples` along the longer side.
+    /// The window of the region with about `samples` along the longer side.
     ///
     /// # Errors
     /// If the region is whole and the world unbounded.
@@ -37,7 +37,7 @@ impl Region {
         self.part(world.recipe().world.size, samples).map_or_else(|| world.window_fitting(samples), Ok)
     }
 
-    /// The same of a square, in a world of this size, if it has one; `None` for the whole.
+    /// The window of a square in a world of this size, or in an unbounded world; `None` for the whole world.
     #[must_use]
     pub fn part(&self, world: Option<[f64; 2]>, samples: usize) -> Option<Window> {
         let Region::Square { center, side } = *self else { return None };
@@ -45,15 +45,15 @@ impl Region {
         let first = |center: f64| ((center - side / 2.0) / cell).round() as i64;
         let window = Window::new(samples, samples, cell).at(first(center[0]), first(center[1]));
         let Some(size) = world else { return Some(window) };
-        // A bounded world has nothing beyond its sides.
+        // A bounded world ends at its sides.
         let ends = size.map(|length| (length / cell).floor() as usize + 1);
         let whole = Window::new(ends[0], ends[1], cell);
         let part = window.intersection(&whole);
         Some(if part.width > 1 && part.height > 1 { part } else { whole })
     }
 
-    /// West, north and the length of the sides of a square, moved and made smaller so that it is inside a world of this
-    /// size; `None` for the whole.
+    /// West, north and side length of a square, moved and shrunk so that it is inside a world of this size; `None` for
+    /// the whole world.
     #[must_use]
     pub fn square(&self, world: Option<[f64; 2]>) -> Option<[f64; 3]> {
         let Region::Square { center, side } = *self else { return None };
@@ -66,7 +66,7 @@ impl Region {
         Some([first(0), first(1), side])
     }
 
-    /// The part that a view shows: all of a bounded world, unless it shows less than half of it.
+    /// The region for a view: all of a bounded world, unless the view shows less than half of it.
     #[must_use]
     pub fn in_view(world: Option<[f64; 2]>, center: [f64; 2], side: f64) -> Region {
         match world {

@@ -1,4 +1,4 @@
-//! What is to be shown.
+//! A request for pictures.
 
 use std::sync::Arc;
 
@@ -14,9 +14,9 @@ use super::region::Region;
 pub struct Request {
     /// The recipe.
     pub recipe: Recipe,
-    /// What is colored: an output, `node`, `node.layer`, or a layer derived from the heights.
+    /// The layer that is colored: an output, `node`, `node.layer`, or a layer derived from the heights.
     pub layer: String,
-    /// The layer that gives the surface its heights.
+    /// The layer with the heights of the surface.
     pub surface: String,
     /// The part of the world.
     pub region: Region,
@@ -24,16 +24,16 @@ pub struct Request {
     pub coloring: Coloring,
     /// Direction to the sun: azimuth clockwise from north and altitude, in degrees.
     pub sun: [f64; 2],
-    /// Samples along the longer side of the finest picture.
+    /// Number of samples along the longer side of the finest picture.
     pub finest: usize,
-    /// The interval of contours in metres, 0 for a round one that suits the land; none if `None`.
+    /// The interval of contours in metres; 0 chooses a round one that suits the land. Without contours if `None`.
     pub contours: Option<f64>,
-    /// The finest picture of the same land in other colors or light: its samples are not computed again.
+    /// The finest picture of the same land with other colors or light; its samples are reused.
     pub land: Option<Arc<Frame>>,
 }
 
 impl Request {
-    /// The heights of a recipe with the standard colors and light.
+    /// A request for the heights of a recipe with the default colors and light.
     #[must_use]
     pub fn new(recipe: Recipe) -> Request {
         let region = Region::of(recipe.world.size, recipe.world.cell);

@@ -5,39 +5,39 @@ use orogen::{Result, World};
 use super::frame::Quality;
 use super::request::Request;
 
-/// A picture that is to be made.
+/// A picture to be made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stage {
-    /// How much coarser its solvers are than the recipe's; 1 for the recipe itself.
+    /// How much coarser the solvers are than the recipe's; 1 for the recipe itself.
     pub coarser: u32,
-    /// Whether the graphics card solves what is chaotic, so that it is other land than the recipe's.
+    /// Whether the graphics card solves chaotic processes, so that the land differs from the recipe's.
     pub on_card: bool,
-    /// Samples along its longer side.
+    /// Number of samples along the longer side.
     pub samples: usize,
-    /// How good it is.
+    /// The quality.
     pub quality: Quality,
 }
 
-/// Samples of the first picture.
+/// Number of samples of the first picture along its longer side.
 pub const FIRST: usize = 256;
 
-/// Samples of the pictures after it, up to the finest.
+/// Numbers of samples of the following pictures, up to the finest.
 const NEXT: [usize; 3] = [1024, 2048, 4096];
 
-/// The time on one core, in nanoseconds, that solvers may take before the first picture: with more, a draft comes
-/// first.
+/// The time on one core, in nanoseconds, that solvers may take before the first picture. If they take longer, a draft
+/// is made first.
 const PATIENCE: f64 = 1.2e8;
 
-/// How much coarser drafts can be.
+/// By how much drafts can be coarser.
 const COARSER: [u32; 3] = [2, 4, 8];
 
-/// The pictures of a request over its opened world.
+/// The pictures of a request, from coarse to fine, for its opened world.
 ///
 /// # Errors
 /// If the world has no such layer or region.
 pub fn of(world: &World, request: &Request) -> Result<Vec<Stage>> {
     let window = request.region.window(world, FIRST)?;
-    // Layers that are computed from rows of heights need no more than these.
+    // Layers that are computed from rows of heights need only the heights.
     let plan = match world.plan(&[&request.surface, &request.layer], &window) {
         Ok(plan) => plan,
         Err(_) => world.plan(&[&request.surface], &window)?,
@@ -49,7 +49,7 @@ pub fn of(world: &World, request: &Request) -> Result<Vec<Stage>> {
         // A solver's work grows with its samples and its steps.
         let is_quick = |coarser: &u32| solving / f64::from(coarser.pow(3)) < PATIENCE;
         let coarser = COARSER.into_iter().find(is_quick).unwrap_or(COARSER[COARSER.len() - 1]);
-        // A card makes the draft with all details; a software driver would be slower than the solvers.
+        // A graphics card makes the draft with all details; a software driver would be slower than the solvers.
         let on_card = world.device().is_some_and(|device| !device.is_software()) && world.may_draft(&plan)?;
         let (coarser, samples) = if on_card { (1, NEXT[0].min(finest)) } else { (coarser, FIRST) };
         stages.push(Stage { coarser, on_card, samples, quality: Quality::Draft });
@@ -92,7 +92,7 @@ mod tests {
         assert_eq!(sizes(&stages("classic", 100)), [256]);
     }
 
-    /// A card that refuses everything.
+    /// A graphics card that refuses everything.
     struct Card {
         is_software: bool,
     }

@@ -1,12 +1,12 @@
-//! Figures of a picture: range, histogram, hypsometric curve.
+//! Statistics of a picture: range, histogram, hypsometric curve.
 
 use orogen::Grid;
 use orogen::grid::analysis::hypsometry;
 
-/// Bars of the histogram, and steps of the curve.
+/// Number of bars of the histogram, and of steps of the curve.
 pub const BARS: usize = 64;
 
-/// Figures of a layer.
+/// Statistics of a layer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statistics {
     /// The lowest and highest finite value; NaN if there is none.
@@ -22,7 +22,7 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// The figures of a grid.
+    /// The statistics of a grid.
     #[must_use]
     pub fn of(grid: &Grid, sea_level: f64) -> Statistics {
         let [low, high] = range(grid.data().iter().copied());

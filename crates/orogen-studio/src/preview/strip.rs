@@ -1,4 +1,4 @@
-//! Small pictures of variants of a recipe, one after the other.
+//! Small pictures of variants of a recipe.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -10,13 +10,13 @@ use super::picture::Picture;
 use super::region::Region;
 use super::worker::Wake;
 
-/// Samples along the longer side of a picture.
+/// Number of samples along the longer side of a picture.
 pub const SIDE: usize = 128;
 
-/// How much coarser the solvers of variants are: many small pictures matter more than their detail.
+/// How much coarser the solvers of variants are, because many small pictures matter more than detail.
 const COARSER: u32 = 4;
 
-/// Makes small pictures of recipes; a new list cancels the one before.
+/// Makes small pictures of recipes; a new list cancels the previous one.
 pub struct Strip {
     wake: Wake,
     sender: Sender<(u64, usize, Result<Picture>)>,
@@ -33,7 +33,7 @@ impl Strip {
         Strip { wake, sender, receiver, list: 0, running: None }
     }
 
-    /// Asks for pictures of a layer of recipes.
+    /// Requests pictures of a layer of recipes.
     ///
     /// # Errors
     /// If no thread can be started.
@@ -49,21 +49,21 @@ impl Strip {
                 if progress.is_cancelled() {
                     return;
                 }
-                // The panel may be closed.
+                // The panel may already be closed.
                 let _ = sender.send((list, k, made));
                 wake();
             }
         })
     }
 
-    /// Cancels what is being made.
+    /// Cancels the current work.
     pub fn cancel(&mut self) {
         if let Some(running) = self.running.take() {
             running.cancel();
         }
     }
 
-    /// The pictures of the current list that have been made since the last call, by their numbers.
+    /// The pictures of the current list that were made since the last call, with their indices.
     #[must_use]
     pub fn made(&self) -> Vec<(usize, Result<Picture>)> {
         let all = std::iter::from_fn(|| self.receiver.try_recv().ok());

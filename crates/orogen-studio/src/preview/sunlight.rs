@@ -1,12 +1,12 @@
-//! Which samples the sun shines on.
+//! Which samples are in the sun.
 
 use orogen::Grid;
 use orogen::grid::analysis::Shadows;
 
 use crate::view::sun;
 
-/// How much of the sun each sample sees, 0 to 255: two bytes for each sample, of the ground and of the surface of land
-/// and sea. Hills of the sea floor cast shadows on the floor, and none on the water above it. `azimuth` and `altitude`
+/// How much of the sun each sample sees, 0 to 255. Two bytes per sample: for the ground, and for the surface of land
+/// and sea. Hills of the sea floor cast shadows on the floor, but not on the water above it. `azimuth` and `altitude`
 /// of the sun are in degrees.
 #[must_use]
 pub fn sunlight(heights: &Grid, sea_level: f32, [azimuth, altitude]: [f64; 2]) -> Vec<u8> {
@@ -32,8 +32,8 @@ mod tests {
     use super::*;
     use orogen::Window;
 
-    /// A row from west to east, with the sun in the west at 20 degrees: shadows are 2.7 times as long as what casts
-    /// them is high.
+    /// A row from west to east, with the sun in the west at 20 degrees: shadows are 2.7 times as long as the obstacle
+    /// is high.
     fn row(heights: &[f32]) -> [Vec<bool>; 2] {
         let grid = Grid::from_data(Window::new(heights.len(), 1, 10.0), heights.to_vec()).unwrap();
         let light = sunlight(&grid, 0.0, [270.0, 20.0]);

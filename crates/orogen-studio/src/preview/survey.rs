@@ -1,4 +1,5 @@
-//! How real the land of a picture is: its measures, made off the thread of the user interface.
+//! Measurements of the land of a picture for comparison with real land, made outside of the thread of the user
+//! interface.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -9,10 +10,10 @@ use orogen::{Progress, Result, Session};
 use super::frame::{Frame, Key};
 use super::worker::Wake;
 
-/// What was measured of a picture; `None` if it has too little land.
+/// The measurements of a picture; `None` if it has too little land.
 pub type Outcome = Result<Option<Measures>>;
 
-/// Measures pictures, one after the other; the next one cancels the one before.
+/// Measures pictures; the next one cancels the previous one.
 pub struct Survey {
     wake: Wake,
     sender: Sender<(Key, Outcome)>,
@@ -23,14 +24,14 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// Nothing is measured yet.
+    /// A survey without measurements.
     #[must_use]
     pub fn new(wake: Wake) -> Survey {
         let (sender, receiver) = channel();
         Survey { wake, sender, receiver, asked: None, running: None, outcome: None }
     }
 
-    /// Measures the heights of a picture, unless it was measured last. What was measured before stays until then.
+    /// Measures the heights of a picture, unless it was the last one measured. Earlier results are kept until then.
     pub fn ask(&mut self, session: &Session, frame: &Arc<Frame>) {
         let key = frame.key();
         if self.asked == Some(key) {
@@ -45,7 +46,7 @@ impl Survey {
         let (frame, sender, wake) = (Arc::clone(frame), self.sender.clone(), Arc::clone(&self.wake));
         let started = session.start(move |session| {
             let outcome = measure(session, &frame, &progress);
-            // The panel may be closed.
+            // The panel may already be closed.
             let _ = sender.send((key, outcome));
             wake();
         });
@@ -54,7 +55,7 @@ impl Survey {
         }
     }
 
-    /// What was measured last.
+    /// The latest result.
     pub fn outcome(&mut self) -> Option<&Outcome> {
         while let Ok((key, outcome)) = self.receiver.try_recv() {
             if self.asked == Some(key) {

@@ -1,4 +1,4 @@
-//! Small pictures of the nodes of a recipe. What has not changed is not made again.
+//! Small pictures of the nodes of a recipe. Pictures that have not changed are not made again.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -11,45 +11,45 @@ use super::picture::Picture;
 use super::region::Region;
 use super::worker::Wake;
 
-/// Samples along the longer side of a picture.
+/// Number of samples along the longer side of a picture.
 pub const SIDE: usize = 64;
 
 /// How much coarser the solvers of drafts are.
 const COARSER: u32 = 4;
 
-/// The time on one core, in nanoseconds, that a picture may take; nodes with more have none.
+/// Maximum time for a picture on one core, in nanoseconds; nodes that take longer have no picture.
 const PATIENCE: f64 = 4e8;
 
-/// What a picture depends on: the content key of its layer, and the window.
+/// Everything a picture depends on: the content key of its layer, and the window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Key([u8; 32], Window);
 
-/// A picture, or that there is none, because it would take too long.
+/// A picture, or `None` because it would take too long.
 type Made = (Key, Option<Arc<Picture>>);
 
 enum Event {
-    /// Of this node; whether it was computed now.
+    /// The picture of a node, and whether it was newly computed.
     Node(String, Made, bool),
-    /// All nodes have been looked at.
+    /// All nodes have been processed.
     Done,
 }
 
-/// Makes pictures of the nodes of a recipe; a new recipe cancels the work for the one before.
+/// Makes pictures of the nodes of a recipe; a new recipe cancels the work for the previous one.
 pub struct Thumbnails {
     wake: Wake,
     sender: Sender<(u64, Event)>,
     receiver: Receiver<(u64, Event)>,
     list: u64,
     running: Option<Progress>,
-    /// By the names of nodes.
+    /// Pictures by the names of nodes.
     made: HashMap<String, Made>,
-    /// The nodes that the current recipe has.
+    /// The nodes of the current recipe.
     names: HashSet<String>,
     computed: u64,
 }
 
 impl Thumbnails {
-    /// None yet.
+    /// No thumbnails yet.
     #[must_use]
     pub fn new(wake: Wake) -> Thumbnails {
         let (sender, receiver) = channel();
@@ -65,7 +65,7 @@ impl Thumbnails {
         }
     }
 
-    /// Asks for pictures of all nodes over a region.
+    /// Requests pictures of all nodes over a region.
     ///
     /// # Errors
     /// If no thread can be started.
@@ -78,7 +78,7 @@ impl Thumbnails {
         let progress = Progress::none();
         self.running = Some(progress.clone());
         session.start(move |session| {
-            // The window may be closed. Recipes that cannot be opened have no pictures.
+            // The window may already be closed. Recipes that cannot be opened have no pictures.
             let tell = |event: Event| {
                 let _ = sender.send((list, event));
                 wake();
@@ -90,14 +90,14 @@ impl Thumbnails {
         })
     }
 
-    /// Cancels what is being made.
+    /// Cancels the current work.
     pub fn cancel(&mut self) {
         if let Some(running) = self.running.take() {
             running.cancel();
         }
     }
 
-    /// Takes what has been made since the last call. Returns whether there is anything new.
+    /// Takes the pictures that were made since the last call. Returns whether there is anything new.
     pub fn poll(&mut self) -> bool {
         let events: Vec<(u64, Event)> = std::iter::from_fn(|| self.receiver.try_recv().ok()).collect();
         let mut is_new = false;
@@ -129,7 +129,7 @@ impl Thumbnails {
         self.running.is_some()
     }
 
-    /// How many pictures have been computed so far.
+    /// Number of pictures that have been computed so far.
     #[must_use]
     pub fn computed(&self) -> u64 {
         self.computed
@@ -142,7 +142,7 @@ impl Drop for Thumbnails {
     }
 }
 
-/// The first layer of a node by a name that no output has.
+/// The first layer of a node, by a name that no output has.
 fn layer_of(recipe: &Recipe, named: &NamedNode) -> String {
     let is_output = recipe.outputs().any(|output| output == named.name);
     match named.node.layers().first() {
@@ -167,7 +167,7 @@ fn make(
         let (made, is_computed) = match one(&worlds, &layer, &window, &known, progress) {
             Ok(made) => made,
             Err(error) if error.kind() == ErrorKind::Cancelled => return Err(error),
-            // A node that cannot be computed by itself has no picture.
+            // A node that cannot be computed on its own has no picture.
             Err(_) => continue,
         };
         if is_computed {
@@ -178,8 +178,8 @@ fn make(
     Ok(())
 }
 
-/// The picture of a layer: a known one, of the recipe itself if that takes little time (its solvers are in the store,
-/// or quick), otherwise of its draft. The flag tells whether it was computed.
+/// The picture of a layer: a known one; otherwise one of the recipe itself if that takes little time (its solvers are
+/// in the store, or quick); otherwise one of its draft. The flag says whether it was computed.
 fn one(worlds: &[World; 2], layer: &str, window: &Window, known: &[Made], progress: &Progress) -> Result<(Made, bool)> {
     let mut last = None;
     for world in worlds {
@@ -207,7 +207,7 @@ mod tests {
     use orogen::{Options, presets};
     use std::time::{Duration, Instant};
 
-    /// Asks, and waits. Returns how many were computed.
+    /// Requests thumbnails and waits for them. Returns how many were computed.
     fn wait(thumbnails: &mut Thumbnails, session: &Session, document: &Document) -> u64 {
         let before = thumbnails.computed();
         let recipe = document.recipe();
@@ -233,7 +233,7 @@ mod tests {
         assert_eq!(wait(&mut thumbnails, &session, &document), 4);
         let picture = |thumbnails: &Thumbnails, node: &str| Arc::clone(thumbnails.of(node).unwrap());
         assert_eq!(picture(&thumbnails, "land").size, [SIDE; 2]);
-        // An output of the same name as a node is something else.
+        // An output with the same name as a node is a different layer.
         assert_ne!(picture(&thumbnails, "hills"), picture(&thumbnails, "rough"));
         assert_eq!(wait(&mut thumbnails, &session, &document), 0);
         let land = picture(&thumbnails, "land");
@@ -241,7 +241,7 @@ mod tests {
         document.apply(&edit("octaves", Value::Integer(2))).unwrap();
         assert_eq!(wait(&mut thumbnails, &session, &document), 2);
         assert_ne!(picture(&thumbnails, "land"), land);
-        // A name is no content.
+        // A name does not affect the content.
         let nodes = vec!["hills".into(), "land".into()];
         document.apply(&Edit::Group { nodes, name: "g".into() }).unwrap();
         assert_eq!(wait(&mut thumbnails, &session, &document), 0);

@@ -1,4 +1,4 @@
-//! The work behind the pictures: one request at a time, on a thread of the session, cancelled by the next.
+//! The work that makes pictures: one request at a time, on a thread of the session, cancelled by the next request.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -22,7 +22,7 @@ use super::statistics::Statistics;
 use super::sunlight::sunlight;
 use super::{cover, failure};
 
-/// What the work tells.
+/// An event of the work.
 #[derive(Debug)]
 pub enum Event {
     /// A picture.
@@ -45,19 +45,19 @@ pub struct Worker {
     /// The number of the last request.
     request: u64,
     running: Option<Progress>,
-    /// The share of the current request that is done, in percent.
+    /// The completed share of the current request, in percent.
     share: Arc<AtomicU32>,
 }
 
 impl Worker {
-    /// A worker in a session, with whose threads and memory it works.
+    /// A worker that uses the threads and memory of a session.
     #[must_use]
     pub fn new(session: Session, wake: Wake) -> Worker {
         let (sender, receiver) = channel();
         Worker { session, wake, sender, receiver, request: 0, running: None, share: Arc::default() }
     }
 
-    /// Asks for pictures. An earlier request is cancelled. Returns the number of the request.
+    /// Requests pictures. An earlier request is cancelled. Returns the number of the request.
     pub fn ask(&mut self, request: Request) -> u64 {
         self.cancel();
         self.request += 1;
@@ -74,7 +74,7 @@ impl Worker {
         self.running = Some(progress.clone());
         let begun = Instant::now();
         let work = move |session: &Session| {
-            // The window may be closed.
+            // The window may already be closed.
             let tell = |event: Event| {
                 let _ = sender.send((number, event));
                 wake();
@@ -98,7 +98,7 @@ impl Worker {
         }
     }
 
-    /// What the current request has told since the last call. Earlier requests are not heard any more.
+    /// The events of the current request since the last call. Events of earlier requests are dropped.
     pub fn events(&mut self) -> Vec<Event> {
         let events: Vec<Event> = std::iter::from_fn(|| self.receiver.try_recv().ok())
             .filter(|(request, _)| *request == self.request)
@@ -110,13 +110,13 @@ impl Worker {
         events
     }
 
-    /// Whether a request is being worked on.
+    /// Whether a request is in progress.
     #[must_use]
     pub fn is_busy(&self) -> bool {
         self.running.is_some()
     }
 
-    /// The share of the current request that is done, 0 to 1.
+    /// The completed share of the current request, 0 to 1.
     #[must_use]
     pub fn share(&self) -> f32 {
         self.share.load(Ordering::Relaxed) as f32 / 100.0
@@ -168,7 +168,7 @@ fn make(
         };
         let draft = is_draft.then(of_stage).transpose()?;
         let work = work(draft.as_ref().unwrap_or(&world), request, stage)?;
-        // The recipe's solvers run before its first picture only.
+        // The recipe's solvers run only before its first picture.
         let is_later = works.iter().any(|(draft, ..): &(Option<World>, Stage, [f64; 2])| draft.is_none());
         works.push((draft, stage, [if is_later { 0.0 } else { work[0] }, work[1]]));
     }
@@ -182,7 +182,7 @@ fn make(
         part.finish();
         let frame = match made {
             Ok(frame) => frame,
-            // A draft that does not work out is left out.
+            // A draft that fails is skipped.
             Err(error) if stage.quality == Quality::Draft && error.kind() != ErrorKind::Cancelled => continue,
             Err(error) => return Err(error),
         };
@@ -233,7 +233,7 @@ fn samples(world: &World, request: &Request, stage: Stage, progress: &Progress) 
     Ok(Samples { heights: Arc::new(heights), values, unit, kind, memory })
 }
 
-/// Colors samples, and lights them.
+/// Computes colors and light of samples.
 fn paint(world: &World, request: &Request, quality: Quality, samples: Samples, progress: &Progress) -> Result<Frame> {
     let Samples { heights, values, unit, kind, memory } = samples;
     let sea_level = world.recipe().world.sea_level;
@@ -252,7 +252,7 @@ fn paint(world: &World, request: &Request, quality: Quality, samples: Samples, p
     let mut shaded = albedo.clone();
     world.install(|| painter.shade(&heights, &mut shaded));
     progress.check()?;
-    // On the session's threads, as all that is divided among threads.
+    // On the session's threads, like all parallel work.
     let (contours, light, statistics) = world.install(|| {
         let contours = request.contours.map(|interval| Contours::of(&heights, interval)).transpose();
         (contours, sunlight(&heights, sea_level as f32, request.sun), Statistics::of(shown, sea_level))

@@ -1,4 +1,4 @@
-//! Random edits, as a person in a hurry makes them.
+//! Random edits, as made by a person in a hurry.
 
 use super::*;
 use crate::editing::names;
@@ -54,7 +54,7 @@ fn edit(recipe: &Recipe, random: &mut Random) -> Option<Edit> {
             Edit::Connect { node: name, input: random.of(&inputs)?.clone(), source }
         }
         5 => {
-            // Ops that are dear are tested elsewhere.
+            // Expensive ops are tested elsewhere.
             let ops: Vec<&str> = Node::all()
                 .iter()
                 .map(|node| node.spec().op)
@@ -72,15 +72,15 @@ fn edit(recipe: &Recipe, random: &mut Random) -> Option<Edit> {
     })
 }
 
-/// Edits at random for some time, and looks at the pictures.
+/// Makes random edits for some time, and requests pictures.
 #[cfg(target_os = "linux")]
 fn edit_for(time: Duration, seed: u64) {
     let begun = Instant::now();
     edit_while(|_| begun.elapsed() < time, seed);
 }
 
-/// Edits at random while `goes_on`, which is given the number of steps so far, and looks at the pictures. Returns the
-/// number of edits.
+/// Makes random edits while `goes_on`, which receives the number of steps so far, returns true, and requests pictures.
+/// Returns the number of edits.
 fn edit_while(goes_on: impl Fn(usize) -> bool, seed: u64) -> usize {
     let session = Session::new(Options { memory: Budget::of(512 << 20), ..Options::default() }).unwrap();
     let limit = 512 << 20;
@@ -96,7 +96,7 @@ fn edit_while(goes_on: impl Fn(usize) -> bool, seed: u64) -> usize {
             1 | 2 => drop(studio.document.undo()),
             3 => {
                 studio.document.redo();
-                // What was typed and undone may come back.
+                // Typed and undone text may come back.
                 if !studio.document.is_valid() {
                     assert!(studio.document.undo());
                 }
@@ -148,7 +148,7 @@ fn random_edits_do_no_harm() {
     assert!(edit_while(|steps| steps < 200, 1) > 100);
 }
 
-/// The memory that this process has taken, in bytes, once all cancelled work has ended.
+/// The memory that this process uses, in bytes, once all cancelled work has ended.
 #[cfg(target_os = "linux")]
 fn resident() -> u64 {
     let is_working = || {
@@ -160,7 +160,7 @@ fn resident() -> u64 {
     while is_working() && begun.elapsed() < Duration::from_secs(300) {
         std::thread::sleep(Duration::from_millis(20));
     }
-    // Without the pages of the program's file, of which more are read as more of it runs.
+    // Without the pages of the program file, more of which are loaded as more of the program runs.
     status("RssAnon:")
 }
 
@@ -172,10 +172,9 @@ fn status(key: &str) -> u64 {
     line.trim().trim_end_matches(" kB").parse::<u64>().unwrap() * 1024
 }
 
-/// The settings of glibc's allocator with which it gives back what is freed: all threads share one heap, its end is
-/// trimmed, and blocks from 16 KiB on have pages of their own. Without them it keeps holes between blocks that are in
-/// use, and some memory for each thread that there was, so that the memory of the process says little about what is in
-/// use.
+/// Settings of glibc's allocator with which it returns freed memory to the system: all threads share one heap, its end
+/// is trimmed, and blocks from 16 KiB have their own pages. Otherwise it keeps gaps between blocks in use, and some
+/// memory for each former thread, so that the memory of the process says little about the memory in use.
 #[cfg(target_os = "linux")]
 const ALLOCATOR: [(&str, &str); 4] = [
     ("MALLOC_ARENA_MAX", "1"),
@@ -194,7 +193,7 @@ fn half_an_hour_of_random_edits_leaks_nothing() {
         assert!(again.status().unwrap().success());
         return;
     }
-    // What is kept has grown to its limits by then.
+    // By then, caches have grown to their limits.
     edit_for(Duration::from_secs(300), 2);
     let before = resident();
     println!("{} KiB", before >> 10);
@@ -202,7 +201,7 @@ fn half_an_hour_of_random_edits_leaks_nothing() {
         edit_for(Duration::from_secs(300), 3 + part);
         println!("{} KiB", resident() >> 10);
     }
-    // Nothing is open at these moments: what has been added since is compared with what the studio needs while it
+    // No document is open at these moments, so the growth since then is compared with what the studio needs while it
     // works.
     let (after, most) = (resident(), status("VmHWM:"));
     println!("at most {} KiB", most >> 10);

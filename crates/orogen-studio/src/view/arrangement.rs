@@ -1,4 +1,4 @@
-//! Where the boxes of a graph stand: all of them in a tidy layout, and a free place for one.
+//! The positions of the boxes of a graph: an automatic layout of all boxes, and a free position for one.
 
 use orogen::graph_layout::forward::Forward;
 use orogen::graph_layout::layout::{Layout, Link, Spacing};
@@ -9,8 +9,8 @@ use super::scene::{End, Scene};
 /// Distances between boxes, wires and columns, in points.
 const SPACING: Spacing = Spacing { gap: 22.0, wire_gap: 12.0, alley: 62.0 };
 
-/// The upper left corners of all boxes. `sizes` are widths and heights, `outlet` and `port` the distance of a wire's
-/// ends from the top of its box.
+/// The upper left corners of all boxes. `sizes` are widths and heights; `outlet` and `port` return the distance of the
+/// ends of a wire from the top of its box.
 #[must_use]
 pub fn tidy(
     scene: &Scene,
@@ -47,7 +47,7 @@ fn overlap((a, of_a): &Area, (b, of_b): &Area, gap: f32) -> bool {
     (0..2).all(|k| a[k] < b[k] + of_b[k] + gap && b[k] < a[k] + of_a[k] + gap)
 }
 
-/// The place nearest to a wanted one at which a box of this size overlaps no other.
+/// The position nearest to `wanted` at which a box of this size does not overlap any other.
 #[must_use]
 pub fn free(wanted: [f32; 2], size: [f32; 2], others: &[Area]) -> [f32; 2] {
     const GAP: f32 = 14.0;
@@ -56,7 +56,7 @@ pub fn free(wanted: [f32; 2], size: [f32; 2], others: &[Area]) -> [f32; 2] {
     if is_free(wanted) {
         return wanted;
     }
-    // The nearest free place touches the sides of others, with the gap between.
+    // The nearest free position touches the sides of other boxes, with the gap between them.
     let mut sides = [vec![wanted[0]], vec![wanted[1]]];
     for (place, of) in others {
         for (k, side) in sides.iter_mut().enumerate() {
@@ -78,7 +78,7 @@ mod tests {
 
     #[test]
     fn circles_of_groups_do_not_overlap_either() {
-        // Every second node is in a group, which reads what reads it.
+        // Every second node is in a group, which reads its own readers.
         for preset in presets::all() {
             let mut document = Document::of_preset(preset).unwrap();
             let nodes = document.recipe().nodes().iter().step_by(2).map(|named| named.name.clone()).collect();

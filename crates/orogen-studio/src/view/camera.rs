@@ -1,14 +1,14 @@
-//! The camera of the view in space.
+//! The camera of the 3D view.
 //!
-//! Lengths are in units of half the longer side of what is shown, whose middle is the origin: x points east, y up and z
-//! south.
+//! Lengths are in units of half the longer side of the shown land. The origin is at its center; x points east, y up and
+//! z south.
 
 use glam::{Mat4, Vec3, Vec4};
 
 /// The camera looks at a point from a distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// What it looks at.
+    /// The point that it looks at.
     pub target: Vec3,
     /// Direction from the target to the camera, clockwise from south, in radians.
     pub yaw: f32,
@@ -21,30 +21,30 @@ pub struct Camera {
 /// Vertical field of view, in radians.
 const FIELD: f32 = 0.7;
 
-/// Elevations from nearly level to nearly from above.
+/// Minimum and maximum elevation: from slightly below level to nearly from above.
 const PITCHES: [f32; 2] = [-0.2, 1.55];
 
-/// Distances.
+/// Minimum and maximum distance.
 const DISTANCES: [f32; 2] = [0.02, 12.0];
 
-/// How far from the middle a target can be.
+/// Maximum distance of the target from the center.
 const REACH: f32 = 2.0;
 
 impl Default for Camera {
     fn default() -> Camera {
-        // A little in front of the middle, so that the land is in the middle of the picture.
+        // Slightly in front of the center, so that the land appears in the middle of the picture.
         Camera { target: Vec3::new(0.12, 0.0, 0.25), yaw: 0.55, pitch: 0.62, distance: 3.05 }
     }
 }
 
 impl Camera {
-    /// Its position.
+    /// The position of the camera.
     #[must_use]
     pub fn position(&self) -> Vec3 {
         self.target - self.forward() * self.distance
     }
 
-    /// The direction in which it looks.
+    /// The viewing direction.
     #[must_use]
     pub fn forward(&self) -> Vec3 {
         let level = libm::cosf(self.pitch);
@@ -52,7 +52,7 @@ impl Camera {
     }
 
     /// The direction from the target to the camera, in degrees clockwise from north, and its elevation in degrees above
-    /// the horizon: to a tenth, and never below the horizon.
+    /// the horizon: rounded to a tenth, and never below the horizon.
     #[must_use]
     pub fn bearing(&self) -> [f64; 2] {
         let tenths = |degrees: f64| (degrees * 10.0).round() / 10.0;
@@ -64,8 +64,8 @@ impl Camera {
         Vec3::new(libm::cosf(self.yaw), 0.0, -libm::sinf(self.yaw))
     }
 
-    /// The matrix from the view's space to clip space, for a picture of this width over height. Depths are reversed: 1
-    /// is near, 0 is far.
+    /// The matrix from the view's space to clip space, for a picture with this ratio of width to height. Depths are
+    /// reversed: 1 is near, 0 is far.
     #[must_use]
     pub fn matrix(&self, aspect: f32) -> Mat4 {
         let near = (self.distance * 0.01).max(1e-3);
@@ -73,13 +73,14 @@ impl Camera {
         projection * Mat4::look_at_rh(self.position(), self.target, Vec3::Y)
     }
 
-    /// Turns around the target by parts of the view's height.
+    /// Rotates around the target; movements are relative to the view's height.
     pub fn orbit(&mut self, [right, down]: [f32; 2]) {
         self.yaw = (self.yaw - right * 3.0).rem_euclid(std::f32::consts::TAU);
         self.pitch = (self.pitch + down * 3.0).clamp(PITCHES[0], PITCHES[1]);
     }
 
-    /// Moves the target over level ground, so that what is under the pointer follows it; by parts of the view's height.
+    /// Moves the target over level ground, so that the point under the pointer follows it; movements are relative to
+    /// the view's height.
     pub fn pan(&mut self, [right, down]: [f32; 2]) {
         let scale = 2.0 * self.distance * libm::tanf(FIELD / 2.0);
         let ahead = Vec3::new(-libm::sinf(self.yaw), 0.0, -libm::cosf(self.yaw));
@@ -87,12 +88,12 @@ impl Camera {
         self.go(self.right() * (-right * scale) + ahead * (down * scale / steep));
     }
 
-    /// Moves closer by a factor above 1, or away.
+    /// Moves closer by a factor above 1, or away by a factor below 1.
     pub fn zoom(&mut self, factor: f32) {
         self.distance = (self.distance / factor.clamp(0.1, 10.0)).clamp(DISTANCES[0], DISTANCES[1]);
     }
 
-    /// Flies: moves the camera with its target, by parts of the distance to the right, up and ahead.
+    /// Moves the camera with its target to the right, up and ahead, relative to the distance.
     pub fn fly(&mut self, [right, up, ahead]: [f32; 3]) {
         let step = self.right() * right + Vec3::Y * up + self.forward() * ahead;
         self.go(step * self.distance);
@@ -102,8 +103,8 @@ impl Camera {
         self.target = (self.target + step).clamp(Vec3::splat(-REACH), Vec3::splat(REACH));
     }
 
-    /// The ray through a position of the picture, from its upper left corner at 0, 0 to its lower right one at 1, 1:
-    /// its start and its unit vector.
+    /// The ray through a position of the picture, from 0, 0 in its upper left corner to 1, 1 in its lower right corner:
+    /// its origin and its unit direction.
     #[must_use]
     pub fn ray(&self, [right, down]: [f32; 2], aspect: f32) -> [Vec3; 2] {
         let inverse = self.matrix(aspect).inverse();
@@ -151,7 +152,7 @@ mod tests {
         camera.pan([0.1, 0.05]);
         let after = camera.matrix(1.0) * Vec4::new(0.0, 0.0, 0.0, 1.0);
         let moved = [after.x / after.w - before.x / before.w, after.y / after.w - before.y / before.w];
-        // Clip space is two heights high, and y points up.
+        // Clip space has a height of two, and y points up.
         assert!((moved[0] - 0.2).abs() < 0.02 && (moved[1] + 0.1).abs() < 0.02, "{moved:?}");
     }
 

@@ -1,19 +1,20 @@
-//! The view of the map: which position of the world is at which position of the view.
+//! The view of the map: converts between positions in the world and in the view.
 
 /// A part of the plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapView {
-    /// What is in the middle: metres east and south of the origin.
+    /// The position at the center: metres east and south of the origin.
     pub center: [f64; 2],
-    /// Metres along the side of a point of the view.
+    /// Metres per point of the view.
     pub scale: f64,
 }
 
-/// Scales, in metres along a point.
+/// Minimum and maximum scale, in metres per point.
 const SCALES: [f64; 2] = [1e-3, 1e6];
 
 impl MapView {
-    /// The view that shows an area as a whole: its west, north, east and south in metres, in a view of these points.
+    /// The view that shows a whole area, given by its west, north, east and south in metres, in a view of this size in
+    /// points.
     #[must_use]
     pub fn fitting([west, north, east, south]: [f64; 4], [width, height]: [f32; 2]) -> MapView {
         let scale = ((east - west) / f64::from(width.max(1.0))).max((south - north) / f64::from(height.max(1.0)));
@@ -23,26 +24,26 @@ impl MapView {
         }
     }
 
-    /// The position of the world at a position of a view of this size.
+    /// The world position at a position in a view of this size.
     #[must_use]
     pub fn world(&self, at: [f32; 2], size: [f32; 2]) -> [f64; 2] {
         std::array::from_fn(|k| self.center[k] + f64::from(at[k] - size[k] / 2.0) * self.scale)
     }
 
-    /// The position of the view at a position of the world.
+    /// The position in the view of a world position.
     #[must_use]
     pub fn screen(&self, world: [f64; 2], size: [f32; 2]) -> [f32; 2] {
         std::array::from_fn(|k| ((world[k] - self.center[k]) / self.scale) as f32 + size[k] / 2.0)
     }
 
-    /// Moves by points of the view: what is under the pointer follows it.
+    /// Moves by points of the view: the position under the pointer follows it.
     pub fn pan(&mut self, by: [f32; 2]) {
         for (center, by) in self.center.iter_mut().zip(by) {
             *center = (*center - f64::from(by) * self.scale).clamp(-1e12, 1e12);
         }
     }
 
-    /// Zooms in by a factor above 1, or out; what is at `at` stays there.
+    /// Zooms in by a factor above 1, or out; the position under `at` does not move.
     pub fn zoom(&mut self, factor: f64, at: [f32; 2], size: [f32; 2]) {
         let fixed = self.world(at, size);
         self.scale = (self.scale / factor.clamp(0.1, 10.0)).clamp(SCALES[0], SCALES[1]);

@@ -1,4 +1,4 @@
-//! What is looked at, and from where.
+//! What is shown, and from where.
 
 pub mod arrangement;
 pub mod camera;

@@ -1,5 +1,5 @@
-//! The graph of a recipe as it is drawn: the nodes of one group, the groups in it as boxes, and what they are connected
-//! to outside.
+//! The graph of a recipe as drawn: the nodes of one group, the groups in it as boxes, and the nodes outside that they
+//! are connected to.
 
 use std::collections::{HashMap, HashSet};
 
@@ -12,7 +12,7 @@ use crate::editing::groups;
 /// An input at the left of a box.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Port {
-    /// What is written beside it.
+    /// The text next to it.
     pub label: String,
     /// The node whose input it is.
     pub node: String,
@@ -23,34 +23,34 @@ pub struct Port {
 /// A box.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GraphBox {
-    /// What it is known by: the name of its node; that of its group with a `/` behind.
+    /// Its identifier: the name of its node, or the name of its group with a trailing `/`.
     pub id: String,
-    /// What it stands for.
+    /// What it represents.
     pub kind: Kind,
     /// Its title.
     pub title: String,
-    /// What is written below the title; empty for groups.
+    /// The text below the title; empty for groups.
     pub subtitle: String,
     /// Its nodes.
     pub nodes: Vec<String>,
     /// Its inputs.
     pub ports: Vec<Port>,
-    /// The nodes that can be read from it.
+    /// The nodes that can be read through it.
     pub outlets: Vec<String>,
 }
 
-/// What a box stands for.
+/// What a box represents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// A node.
     Node(Locality),
-    /// A group, which can be entered.
+    /// A group, which can be opened.
     Group,
-    /// A node outside of the group that is shown.
+    /// A node outside of the shown group.
     Outside,
 }
 
-/// Where a wire ends at a box.
+/// The end of a wire at a box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
     /// At an input.
@@ -68,7 +68,7 @@ pub struct Wire {
     pub outlet: usize,
     /// The box that reads.
     pub to: usize,
-    /// Where it ends.
+    /// Its end.
     pub end: End,
 }
 
@@ -81,7 +81,7 @@ pub struct Scene {
     pub wires: Vec<Wire>,
 }
 
-/// The node of a reference to a node or a layer of one.
+/// The node that an input refers to, possibly by a layer.
 #[must_use]
 pub fn source_of(input: &Input) -> Option<&str> {
     match input {
@@ -90,7 +90,7 @@ pub fn source_of(input: &Input) -> Option<&str> {
     }
 }
 
-/// The inputs of a node with their names; `mask` is the last one.
+/// The inputs of a node with their names; `mask` comes last.
 fn inputs(named: &NamedNode) -> Vec<(&str, &Input)> {
     let inputs = named.node.inputs();
     let own = inputs.iter().enumerate().map(|(i, input)| (input.name, named.node.input(i)));
@@ -98,7 +98,7 @@ fn inputs(named: &NamedNode) -> Vec<(&str, &Input)> {
 }
 
 impl Scene {
-    /// What a group has; all of the recipe for the empty name.
+    /// The scene of a group; of the whole recipe for the empty name.
     #[must_use]
     pub fn of(recipe: &Recipe, group: &str) -> Scene {
         let mut scene = Scene::default();
@@ -142,7 +142,7 @@ impl Scene {
         }
         let outputs: HashSet<&str> = recipe.output_inputs().iter().filter_map(|(_, input)| source_of(input)).collect();
         for block in scene.boxes.iter_mut().filter(|block| block.kind == Kind::Group) {
-            // What nothing reads is an end of the group, too.
+            // Nodes that nothing reads are also outlets of the group.
             for name in block.nodes.clone() {
                 if outputs.contains(name.as_str()) || !read.contains(name.as_str()) {
                     block.outlet(&name);
@@ -152,12 +152,12 @@ impl Scene {
         scene
     }
 
-    /// The box at an end of a wire; made if it is outside.
+    /// The box at an end of a wire; it is created if it is outside the group.
     fn end(&mut self, at: &mut HashMap<String, usize>, id: &str, name: &str, reads: bool) -> usize {
         if let Some(known) = at.get(id) {
             return *known;
         }
-        // What is read and reads, too, stands at both sides.
+        // A node outside that both is read and reads appears on both sides.
         let id = format!("{}{name}", if reads { '>' } else { '<' });
         *at.entry(id.clone()).or_insert_with(|| {
             self.boxes.push(GraphBox {
@@ -173,14 +173,14 @@ impl Scene {
         })
     }
 
-    /// The box that a node is in.
+    /// The box that contains a node.
     #[must_use]
     pub fn box_of(&self, node: &str) -> Option<&GraphBox> {
         self.boxes.iter().find(|block| block.kind != Kind::Outside && block.nodes.iter().any(|name| name == node))
     }
 }
 
-/// What the box of a node is known by if a group is shown.
+/// The identifier of the box of a node when a group is shown.
 fn id_of(name: &str, group: &str) -> String {
     groups::inner(name, group).map_or_else(|| name.to_owned(), |inner| format!("{inner}/"))
 }
@@ -221,13 +221,13 @@ impl GraphBox {
         }
     }
 
-    /// The whole name of its group; `None` for other boxes.
+    /// The full name of its group; `None` for other boxes.
     #[must_use]
     pub fn group_name(&self) -> Option<&str> {
         self.id.strip_suffix('/').filter(|_| self.kind == Kind::Group)
     }
 
-    /// The name of one of its nodes without the names of the groups around them.
+    /// The name of one of its nodes without the names of the groups around the box.
     #[must_use]
     pub fn inside<'a>(&self, name: &'a str) -> &'a str {
         self.group_name().and_then(|group| groups::rest(name, group)).unwrap_or_else(|| groups::own_name(name))

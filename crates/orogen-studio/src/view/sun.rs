@@ -1,6 +1,6 @@
 //! The direction of the sun.
 
-/// The unit vector to a sun at an azimuth clockwise from north and an altitude, in degrees: east, south and up.
+/// The unit vector towards the sun at an azimuth clockwise from north and an altitude, in degrees: east, south and up.
 #[must_use]
 pub fn towards([azimuth, altitude]: [f64; 2]) -> [f64; 3] {
     let (azimuth, altitude) = (azimuth.to_radians(), altitude.to_radians());

@@ -1,4 +1,4 @@
-//! What a person asks for.
+//! Actions of the user.
 
 use std::path::PathBuf;
 
@@ -11,57 +11,57 @@ use crate::preview::coloring::Coloring;
 use crate::preview::region::Region;
 use crate::settings::Theme;
 
-/// Something that a person asks for.
+/// An action of the user.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
-    /// A command of the menus.
+    /// Runs a command of the menus.
     Command(Command),
-    /// An edit of the recipe.
+    /// Edits the recipe.
     Edit(Edit),
-    /// Another text of the recipe.
+    /// Replaces the text of the recipe.
     Type(String),
-    /// The end of a gesture, such as the drag of a slider.
+    /// Ends a gesture, such as the drag of a slider.
     EndGesture,
-    /// The selected nodes.
+    /// Selects nodes.
     Select(Vec<String>),
-    /// The layer that is shown.
+    /// Shows a layer.
     Show(String),
-    /// What the colors show.
+    /// Selects what the colors show.
     Color(Coloring),
-    /// The dialog of color ramps is opened.
+    /// Opens the dialog of color ramps.
     EditColors,
-    /// A palette is read from a file, to be edited.
+    /// Reads a palette from a file, for editing.
     OpenPalette(PathBuf),
-    /// The edited palette is written to a file.
+    /// Writes the edited palette to a file.
     SavePalette(PathBuf),
-    /// A file is to be chosen.
+    /// Opens a dialog for choosing a file.
     Choose(Purpose),
-    /// The direction of the sun: azimuth and altitude in degrees.
+    /// Sets the direction of the sun: azimuth and altitude in degrees.
     Sun([f64; 2]),
-    /// The interval of contours in metres, 0 for one that suits the land; none if `None`.
+    /// Sets the interval of contours in metres; 0 chooses one that suits the land. `None` switches contours off.
     Contours(Option<f64>),
-    /// Samples along the longer side of the finest picture.
+    /// Sets the number of samples along the longer side of the finest picture.
     Finest(usize),
-    /// The part of the world.
+    /// Selects the part of the world.
     Region(Region),
-    /// A preset is opened.
+    /// Opens a preset.
     OpenPreset(&'static str),
-    /// A file is opened.
+    /// Opens a file.
     Open(PathBuf),
-    /// The document is saved to a file.
+    /// Saves the document to a file.
     Save(PathBuf),
-    /// The language of the interface.
+    /// Sets the language of the interface.
     Language(Language),
-    /// The colors of the interface.
+    /// Sets the color theme of the interface.
     Theme(Theme),
-    /// A line or an area is drawn on the map, by its op.
+    /// Starts drawing a line or an area on the map, by its op.
     Draw(&'static str),
-    /// A brush is taken on the map.
+    /// Selects a brush on the map.
     Brush(Effect),
-    /// A group is shown in the graph.
+    /// Shows a group in the graph.
     Enter(String),
-    /// A text is copied.
+    /// Copies a text to the clipboard.
     Copy(String),
-    /// A line of the text is shown.
+    /// Shows a line of the text.
     GoToLine(usize),
 }

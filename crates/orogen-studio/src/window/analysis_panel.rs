@@ -1,4 +1,4 @@
-//! Figures of what is shown: histogram, hypsometric curve, range.
+//! Statistics of the shown layer: histogram, hypsometric curve, range.
 
 use eframe::egui::{self, Align2, Color32, FontId, Rect, RichText, Sense, Stroke, Ui, Vec2, pos2};
 

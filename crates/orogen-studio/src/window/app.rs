@@ -1,4 +1,4 @@
-//! The application: lays out the panels, and carries out what they ask for.
+//! The application: lays out the panels, and carries out their actions.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -29,7 +29,7 @@ use crate::recovery::Recovery;
 use crate::settings::Settings;
 use crate::studio::{self, Studio};
 
-/// What waits for the answer about changes that are not saved.
+/// An action that waits until the user has decided about unsaved changes.
 #[derive(Debug, Clone)]
 enum Pending {
     Open(PathBuf),
@@ -45,12 +45,12 @@ pub struct App {
     gpu: Option<Gpu>,
     wake: Wake,
     settings: Settings,
-    /// The folder of settings.
+    /// The settings folder.
     folder: Option<PathBuf>,
     language: Language,
     ability: Option<Ability>,
     watch: DeviceWatch,
-    /// When the device is to be lost, for tests.
+    /// The time at which the device is lost, for tests.
     lose_device: Option<f64>,
     studio: Option<Studio>,
     panels: Panels,
@@ -59,37 +59,37 @@ pub struct App {
     recovery: Recovery,
     /// The text that a crash left behind.
     recovered: Option<(String, String)>,
-    /// When the file of the document was looked at last.
+    /// The time of the last check of the document's file.
     watched: f64,
     may_close: bool,
-    /// Whether changes that are not saved stay for the next start.
+    /// Whether unsaved changes are kept for the next start.
     keeps_recovered: bool,
 }
 
-/// What an application starts with.
+/// The initial state of an application.
 #[derive(Default)]
 pub struct Start {
-    /// What is remembered between runs.
+    /// Settings that are remembered between runs.
     pub settings: Settings,
-    /// The folder of settings.
+    /// The settings folder.
     pub folder: Option<PathBuf>,
-    /// The document, in place of the start page.
+    /// The document that is opened instead of the start page.
     pub document: Option<Document>,
     /// The graphics card that makes previews.
     pub gpu: Option<Gpu>,
-    /// What watches the graphics device.
+    /// The watch on the graphics device.
     pub watch: DeviceWatch,
-    /// Whether the run before ended because its device was lost.
+    /// Whether the previous run ended because its device was lost.
     pub is_after_loss: bool,
-    /// The seconds after which the device is to be lost, for tests.
+    /// Seconds after which the device is lost, for tests.
     pub lose_device: Option<f64>,
 }
 
-/// The seconds between two looks at the file of the document.
+/// Seconds between two checks of the document's file.
 const WATCH: f64 = 0.5;
 
 impl App {
-    /// The application with a document, or with the start page.
+    /// Creates the application with a document, or with the start page.
     ///
     /// # Errors
     /// If no threads can be started.
@@ -148,7 +148,7 @@ impl App {
         self.studio.as_ref()
     }
 
-    /// The dialog of exports, while it is open.
+    /// The export dialog, while it is open.
     #[must_use]
     pub fn export_dialog(&self) -> Option<&ExportDialog> {
         self.dialogs.export.as_ref()
@@ -156,7 +156,7 @@ impl App {
 
     fn use_language(&mut self, context: &Context) {
         if self.language == Language::Chinese && fonts::add_chinese(context).is_none() {
-            // Without the font all letters would be shown as boxes.
+            // Without the font, all characters would be shown as boxes.
             self.language = Language::English;
             self.dialogs.message = Some((self.text("font.title").into(), self.text("font.missing").into()));
         }
@@ -176,7 +176,7 @@ impl App {
             self.remember();
         }
         if !document.is_valid() {
-            // Its errors are shown there.
+            // This panel shows the errors of the text.
             self.panels.below = Below::Text;
         }
         match &mut self.studio {
@@ -191,7 +191,7 @@ impl App {
         self.note_document();
     }
 
-    /// Notes what is open, for the case that the graphics device is lost.
+    /// Records which document is open, in case the graphics device is lost.
     fn note_document(&self) {
         let document = self.studio.as_ref().map(|studio| &studio.document);
         self.watch.set_document(document.map(|document| match document.path() {
@@ -217,7 +217,7 @@ impl App {
         }
     }
 
-    /// Does what waits for an answer, or asks first if changes are not saved.
+    /// Carries out a pending action, or asks first if there are unsaved changes.
     fn leave(&mut self, pending: Pending, context: &Context) {
         match self.studio.as_ref().is_some_and(|studio| studio.document.is_changed()) {
             true => self.pending = Some(pending),
@@ -312,7 +312,7 @@ impl App {
         }
     }
 
-    /// Opens the dialog with the colors of the view.
+    /// Opens the color dialog with the colors of the view.
     fn edit_colors(&mut self) {
         let Some(studio) = &self.studio else { return };
         let is_edited = matches!(studio.look.coloring, Coloring::Edited(_));
@@ -399,7 +399,7 @@ impl App {
                 let seed = studio.document.recipe().world.seed;
                 let next = Edit::Seed(if seed >= i64::MAX as u64 { 0 } else { seed + 1 });
                 let edited = studio.edit(&next);
-                // Each seed is a step of its own.
+                // Each seed is a separate step.
                 studio.document.end_gesture();
                 self.say_failure(edited);
             }
@@ -437,9 +437,9 @@ impl App {
         self.dialogs.files = Some(FileDialog::new(Purpose::Save, studio.document.path().or(Some(&name))));
     }
 
-    /// What the keyboard asks for.
+    /// Adds the actions of keyboard shortcuts.
     fn keys(context: &Context, actions: &mut Vec<Action>) {
-        // Longer combinations first: Ctrl+Shift+Z is no Ctrl+Z.
+        // Longer combinations first, so that Ctrl+Shift+Z does not trigger Ctrl+Z.
         let mut entries: Vec<&command::Entry> = command::ALL.iter().filter(|entry| entry.keys.is_some()).collect();
         entries.sort_by_key(|entry| !entry.keys.is_some_and(|keys| keys.modifiers.shift));
         for entry in entries {
@@ -451,7 +451,7 @@ impl App {
         }
     }
 
-    /// Files dropped onto the window.
+    /// Opens files that are dropped onto the window.
     fn dropped(context: &Context, actions: &mut Vec<Action>) {
         let paths: Vec<PathBuf> =
             context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_path_buf()).collect());
@@ -485,14 +485,14 @@ impl App {
         }
     }
 
-    /// Opens the text that a crash left behind. It has no file: saving asks for one.
+    /// Opens the text that a crash left behind. It has no file, so saving asks for one.
     fn open_recovered(&mut self) {
         if let Some((title, text)) = self.recovered.take() {
             self.open(Document::recovered(&PathBuf::from(format!("{title}.toml")), text));
         }
     }
 
-    /// Ends the window if its graphics device is gone, and tells of the device's errors.
+    /// Closes the window if its graphics device is lost, and reports errors of the device.
     fn look_at_device(&mut self, context: &Context, frame: &eframe::Frame) {
         if self.lose_device.is_some_and(|after| context.input(|input| input.time) > after)
             && let Some(state) = frame.wgpu_render_state()
@@ -509,7 +509,7 @@ impl App {
         }
     }
 
-    /// Asks what to do with changes that are not saved.
+    /// Asks what to do with unsaved changes.
     fn ask(&mut self, context: &Context) {
         let (Some(pending), Some(studio)) = (self.pending.clone(), &self.studio) else { return };
         match dialogs::unsaved(context, studio.document.title(), self.language) {

@@ -1,4 +1,4 @@
-//! The commands of the menus, the command palette and the keyboard: each is declared here once.
+//! The commands of the menus, the command palette and the keyboard. Each is declared here once.
 
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
@@ -49,7 +49,7 @@ impl Menu {
     /// All menus, in their order.
     pub const ALL: [Menu; 4] = [Menu::File, Menu::Edit, Menu::View, Menu::Help];
 
-    /// The key of its name.
+    /// The catalog key of its name.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -66,11 +66,11 @@ impl Menu {
 pub struct Entry {
     /// The command.
     pub command: Command,
-    /// The key of its name.
+    /// The catalog key of its name.
     pub name: &'static str,
-    /// Its menu.
+    /// The menu.
     pub menu: Menu,
-    /// Its keys.
+    /// The keyboard shortcut.
     pub keys: Option<KeyboardShortcut>,
     /// Whether it needs a document.
     pub needs_document: bool,
@@ -126,7 +126,7 @@ pub static ALL: [Entry; 27] = [
 ];
 
 impl Command {
-    /// Its declaration.
+    /// The declaration of the command.
     #[must_use]
     pub fn entry(self) -> Option<&'static Entry> {
         ALL.iter().find(|entry| entry.command == self)

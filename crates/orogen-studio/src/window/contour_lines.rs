@@ -9,17 +9,18 @@ use crate::preview::contours::Contours;
 use crate::preview::frame::{Frame, Key};
 use crate::view::map_view::MapView;
 
-/// What was drawn last, which stays while neither the picture nor the view changes.
+/// The last drawing, which is reused while neither the picture nor the view changes.
 #[derive(Default)]
 pub struct ContourLines {
     drawn: Option<((Key, MapView, Rect), Vec<Shape>)>,
 }
 
-/// Points of the view between two labels of a line, and the distance that labels keep.
+/// Distance between two labels of a line, and minimum distance between labels of different lines, in points of the
+/// view.
 const BETWEEN: f32 = 420.0;
 const APART: f32 = 70.0;
 
-/// The fewest points of the view between two corners of a line.
+/// Minimum distance between two vertices of a line, in points of the view.
 const STEP: f32 = 1.2;
 
 const COLOR: Color32 = Color32::from_rgb(70, 48, 30);
@@ -50,7 +51,7 @@ fn shapes(painter: &Painter, rect: Rect, contours: &Arc<Contours>, view: &MapVie
             Stroke::new(0.8, COLOR.gamma_multiply(0.6))
         };
         let mut part: Vec<Pos2> = Vec::new();
-        // Half of the way before the first label.
+        // The first label comes after half of the distance.
         let mut way = BETWEEN / 2.0;
         for point in line.path() {
             let [x, y] = view.screen(point, size);
@@ -75,7 +76,7 @@ fn shapes(painter: &Painter, rect: Rect, contours: &Arc<Contours>, view: &MapVie
             if is_index && way > BETWEEN && places.iter().all(|place| place.distance(at) > APART) {
                 way = 0.0;
                 places.push(at);
-                // Along some of the way that led here, so that small corners do not turn it.
+                // The direction is taken over several points, so that small corners do not rotate the label.
                 let before = part[part.len().saturating_sub(8)];
                 labels.push(label(painter, at, at - before, line.elevation));
             }
@@ -88,7 +89,7 @@ fn shapes(painter: &Painter, rect: Rect, contours: &Arc<Contours>, view: &MapVie
     lines
 }
 
-/// The height at a place, along a direction, with a light edge. It is never upside down.
+/// The height at a position, along a direction, with a light edge. It is never upside down.
 fn label(painter: &Painter, at: Pos2, along: Vec2, elevation: f64) -> Vec<Shape> {
     let text = orogen::grid::words::number(elevation);
     let angle = libm::atan2f(along.y, along.x);

@@ -1,11 +1,11 @@
-//! The graphics device: what goes wrong with it while the window is open.
+//! The graphics device, and its faults while the window is open.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui_wgpu::{RenderState, wgpu};
 
-/// What has gone wrong with a device.
+/// The faults of a device.
 #[derive(Debug, Clone, Default)]
 pub struct DeviceWatch {
     shared: Arc<Mutex<Faults>>,
@@ -13,20 +13,20 @@ pub struct DeviceWatch {
 
 #[derive(Debug, Default)]
 struct Faults {
-    /// Why the device is gone.
+    /// The reason why the device is lost.
     lost: Option<String>,
-    /// The first error that was not told yet.
+    /// The first error that was not reported yet.
     error: Option<String>,
-    /// Whether an error was told.
+    /// Whether an error was reported.
     was_told: bool,
-    /// What was open when the device was lost.
+    /// The document that was open when the device was lost.
     document: Option<PathBuf>,
     /// The device.
     device: Option<wgpu::Device>,
 }
 
 impl DeviceWatch {
-    /// Watches the device of a window. Without this the first error would end the program.
+    /// Starts watching the device of a window. Otherwise the first error would end the program.
     pub fn start(&self, state: &RenderState) {
         let shared = Arc::clone(&self.shared);
         state.device.set_device_lost_callback(move |reason, message| {
@@ -43,29 +43,29 @@ impl DeviceWatch {
         }));
     }
 
-    /// Why the device is gone, if it is.
+    /// The reason why the device is lost, if it is.
     #[must_use]
     pub fn lost(&self) -> Option<String> {
         let device = self.shared.lock().unwrap_or_else(PoisonError::into_inner).device.clone();
         if let Some(device) = device {
-            // It tells of its loss when it is asked for what it has done.
+            // The device only reports its loss when it is polled.
             let _ = device.poll(wgpu::PollType::Poll);
         }
         self.shared.lock().unwrap_or_else(PoisonError::into_inner).lost.clone()
     }
 
-    /// Notes what is open: a file, or the name of a preset.
+    /// Records which document is open: a file, or the name of a preset.
     pub fn set_document(&self, document: Option<PathBuf>) {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner).document = document;
     }
 
-    /// What was open when the device was lost.
+    /// The document that was open when the device was lost.
     #[must_use]
     pub fn document(&self) -> Option<PathBuf> {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner).document.clone()
     }
 
-    /// The first error of the device; later calls return none, because an error comes with every frame.
+    /// The first error of the device. Later calls return `None`, because an error occurs in every frame.
     #[must_use]
     pub fn error(&self) -> Option<String> {
         let mut faults = self.shared.lock().unwrap_or_else(PoisonError::into_inner);

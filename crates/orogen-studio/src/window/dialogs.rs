@@ -12,7 +12,7 @@ use crate::catalogue::Language;
 use crate::files;
 use crate::studio::Studio;
 
-/// A dialog that chooses a file.
+/// A dialog for choosing a file.
 #[derive(Debug)]
 pub struct FileDialog {
     purpose: Purpose,
@@ -24,7 +24,7 @@ pub struct FileDialog {
 }
 
 impl FileDialog {
-    /// A dialog that begins at a file.
+    /// A dialog that starts at a path.
     #[must_use]
     pub fn new(purpose: Purpose, at: Option<&Path>) -> FileDialog {
         let folder = at.and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
@@ -112,7 +112,7 @@ impl FileDialog {
                 let button =
                     ui.add_enabled(!self.name.trim().is_empty(), egui::Button::new(language.text("file.choose")));
                 if (confirmed || button.clicked()) && !self.name.trim().is_empty() {
-                    // A whole path in place of a name is fine, too.
+                    // A full path may be given instead of a name.
                     chosen = Some(self.folder.join(self.name.trim()));
                 }
             });
@@ -231,18 +231,18 @@ pub fn shortcuts(context: &Context, language: Language) -> bool {
     is_open && !context.input(|input| input.key_pressed(Key::Escape))
 }
 
-/// What is done with changes that are not saved.
+/// The user's decision about unsaved changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unsaved {
-    /// They are saved.
+    /// Save them.
     Save,
-    /// They are dropped.
+    /// Discard them.
     Drop,
-    /// What was asked for is not done.
+    /// Cancel the action.
     Cancel,
 }
 
-/// Asks what to do with changes that are not saved.
+/// Asks what to do with unsaved changes.
 #[must_use]
 pub fn unsaved(context: &Context, title: &str, language: Language) -> Option<Unsaved> {
     let mut answer = None;
@@ -279,7 +279,7 @@ pub fn message(context: &Context, title: &str, text: &str) -> bool {
     is_open && stays && !context.input(|input| input.key_pressed(Key::Escape))
 }
 
-/// A window in the middle.
+/// A window in the center of the screen.
 pub fn window(context: &Context, title: &str, is_open: &mut bool, size: Vec2, add: impl FnOnce(&mut egui::Ui)) {
     egui::Window::new(title)
         .open(is_open)

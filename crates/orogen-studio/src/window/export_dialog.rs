@@ -1,4 +1,4 @@
-//! The dialog of exports.
+//! The export dialog.
 
 use std::path::PathBuf;
 
@@ -23,16 +23,16 @@ pub struct ExportDialog {
     /// The file as it is typed.
     path: String,
     running: Option<Running>,
-    /// What the last export has led to.
+    /// The result of the last export.
     outcome: Option<Result<String, String>>,
 }
 
-/// Maximum height of the fields, and the height of all else.
+/// Maximum height of the fields, and the height of the other parts.
 const HEIGHT: f32 = 410.0;
 const OTHER: f32 = 370.0;
 
 impl ExportDialog {
-    /// A dialog for the document of the studio. A render begins with what the view in space shows.
+    /// A dialog for the document of the studio. A render starts with the settings of the 3D view.
     #[must_use]
     pub fn new(studio: &Studio, view: &ShownView) -> Option<ExportDialog> {
         let document = &studio.document;
@@ -42,7 +42,7 @@ impl ExportDialog {
         Some(ExportDialog { path: shown(&export), export, running: None, outcome: None })
     }
 
-    /// What is to be exported.
+    /// The export with its settings.
     #[must_use]
     pub fn export(&self) -> &Export {
         &self.export
@@ -125,7 +125,7 @@ impl ExportDialog {
         ui.end_row();
     }
 
-    /// The command line, the buttons, and what the export has led to.
+    /// The command line, the buttons, and the result of the export.
     fn ending(&mut self, ui: &mut Ui, studio: &Studio, wake: &Wake, language: Language, actions: &mut Vec<Action>) {
         let document = &studio.document;
         let argument = document.argument();
@@ -173,7 +173,7 @@ impl ExportDialog {
         }
     }
 
-    /// What the last export has led to; `None` while it runs.
+    /// The result of the last export; `None` while it runs.
     #[must_use]
     pub fn outcome(&self) -> Option<&Result<String, String>> {
         self.outcome.as_ref()

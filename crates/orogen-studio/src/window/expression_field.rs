@@ -1,4 +1,4 @@
-//! A field for an expression: what is wrong with it is shown while it is typed, and only a right one is applied.
+//! A field for an expression: errors are shown while it is typed, and only a valid expression is applied.
 
 use std::collections::HashMap;
 
@@ -14,32 +14,32 @@ use crate::studio::Studio;
 #[derive(Debug)]
 struct Typed {
     text: String,
-    /// The expression of the recipe that it was typed over.
+    /// The expression of the recipe when typing started.
     own: String,
     fault: Option<ExpressionDiagnostic>,
-    /// Where the cursor was, in bytes.
+    /// The position of the cursor, in bytes.
     cursor: usize,
 }
 
-/// Expressions that are being typed. They stay when the keyboard goes elsewhere.
+/// Expressions that are being typed. They are kept when the keyboard focus moves elsewhere.
 #[derive(Debug, Default)]
 pub struct ExpressionFields {
     typed: HashMap<Site, Typed>,
 }
 
-/// Completions that are shown.
+/// Maximum number of completions that are shown.
 const SHOWN: usize = 8;
 
 const SIZE: f32 = 12.0;
 
 impl ExpressionFields {
-    /// Begins with a text that the recipe does not have yet.
+    /// Starts with a text that the recipe does not have yet.
     pub fn begin(&mut self, site: Site, own: &str, text: &str) {
         let typed = Typed { text: text.to_owned(), own: own.to_owned(), fault: None, cursor: text.len() };
         self.typed.insert(site, typed);
     }
 
-    /// Forgets what is typed.
+    /// Drops the typed text.
     pub fn end(&mut self, site: &Site) {
         self.typed.remove(site);
     }
@@ -50,7 +50,7 @@ impl ExpressionFields {
         self.typed.contains_key(site)
     }
 
-    /// Shows the field; `own` is what the recipe has.
+    /// Shows the field; `own` is the expression in the recipe.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -68,7 +68,7 @@ impl ExpressionFields {
         });
         let id = id_of(site);
         if typed.own != own && typed.text != own && !ui.ctx().memory(|memory| memory.has_focus(id)) {
-            // The recipe was changed elsewhere, such as by undo.
+            // The recipe was changed elsewhere, for example by undo.
             (typed.text, typed.fault) = (own.to_owned(), None);
         }
         own.clone_into(&mut typed.own);
@@ -109,13 +109,13 @@ impl ExpressionFields {
         if has_ended {
             actions.push(Action::EndGesture);
         }
-        // What is right is in the recipe.
+        // A valid expression is already in the recipe.
         if typed.fault.is_some() || typed.text != own {
             self.typed.insert(site.clone(), typed);
         }
     }
 
-    /// The words that complete the one at the cursor, and a menu of all.
+    /// Completions for the word at the cursor, and a menu of all words.
     fn words(
         &mut self,
         ui: &mut Ui,
@@ -168,12 +168,12 @@ impl ExpressionFields {
     }
 }
 
-/// What the field of an expression is known by in the interface.
+/// The identifier of the field of an expression in the interface.
 fn id_of(site: &Site) -> egui::Id {
     egui::Id::unique(("expression", &site.node, &site.key))
 }
 
-/// An expression with the wrong part underlined.
+/// Lays out an expression with the erroneous part underlined.
 fn underlined(
     text: &str,
     fault: Option<&ExpressionDiagnostic>,
@@ -185,7 +185,7 @@ fn underlined(
     job.wrap.max_width = width;
     let format =
         |underline: Stroke| TextFormat { font_id: FontId::monospace(SIZE), color, underline, ..TextFormat::default() };
-    // The fault may be of the text before the last letter.
+    // The error may refer to the text before the last character was typed.
     let span = fault.map(|fault| fault.span.clone()).filter(|span| text.get(span.clone()).is_some());
     let span = span.unwrap_or(text.len()..text.len());
     let parts = [(0..span.start, Stroke::NONE), (span.clone(), stroke), (span.end..text.len(), Stroke::NONE)];

@@ -1,4 +1,4 @@
-//! Fields for values, made from what is declared of them.
+//! Fields for values, derived from their declarations.
 
 use eframe::egui::{
     self, Align2, ComboBox, DragValue, FontId, Response, Sense, Slider, SliderClamping, Stroke, TextEdit, Ui, Vec2,
@@ -6,7 +6,7 @@ use eframe::egui::{
 use orogen::declare::Shape;
 use orogen::value::{Spanned, Value};
 
-/// What a person did with a field.
+/// The user's input in a field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Input<T> {
     /// The new value.
@@ -24,26 +24,26 @@ impl<T> Input<T> {
         Input { value: response.changed().then_some(value), ended: response.drag_stopped() || response.lost_focus() }
     }
 
-    /// The same for another kind of value.
+    /// Converts the value.
     pub fn map<U>(self, of: impl FnOnce(T) -> U) -> Input<U> {
         Input { value: self.value.map(of), ended: self.ended }
     }
 }
 
-/// What is declared of a number.
+/// The declaration of a number.
 #[derive(Debug, Clone, Copy)]
 pub struct Number<'a> {
-    /// Its ends; infinite if there is none.
+    /// Minimum and maximum; infinite if there is none.
     pub range: [f64; 2],
-    /// Its default, from which the slider's ends follow where the range is wide.
+    /// The default; if the range is wide, the slider's ends are derived from it.
     pub default: f64,
-    /// Its unit, or empty.
+    /// The unit, or empty.
     pub unit: &'a str,
-    /// Whether it is whole.
+    /// Whether it is an integer.
     pub is_whole: bool,
 }
 
-/// A range is wide if it has this many times the default.
+/// A range is wide if it spans more than this many times the default.
 const WIDE: f64 = 200.0;
 
 impl Number<'_> {
@@ -84,14 +84,14 @@ pub fn number(ui: &mut Ui, label: &str, mut value: f64, declared: &Number) -> In
     Input::of(&response, rounded(value.clamp(low, high)))
 }
 
-/// Gives a field its name for screen readers and tests.
+/// Sets the name of a field for screen readers and tests.
 fn named(response: Response, label: &str) -> Response {
     let label = label.to_owned();
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, label.clone()));
     response
 }
 
-/// Without the digits that a slider adds: six of them are enough.
+/// Removes the digits that a slider adds: six digits are enough.
 #[must_use]
 pub fn rounded(value: f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
@@ -101,7 +101,7 @@ pub fn rounded(value: f64) -> f64 {
     text.parse().unwrap_or(value)
 }
 
-/// A field for a value of a shape; `None` if the shape has no field.
+/// A field for a value of a shape. Shapes without a field show nothing.
 pub fn value(ui: &mut Ui, label: &str, shape: Shape, value: &Value, declared: &Number) -> Input<Value> {
     match (shape, value) {
         (Shape::Number, value) => match value.number() {
@@ -172,7 +172,7 @@ fn pair(ui: &mut Ui, items: &[Spanned<Value>]) -> Input<Value> {
     Input { value: input.value.map(|()| list()), ended: input.ended }
 }
 
-/// Points of a curve that are dragged; a double click adds one or removes it.
+/// A curve with points that can be dragged; a double click adds a point or removes it.
 fn curve(ui: &mut Ui, items: &[Spanned<Value>]) -> Input<Value> {
     let mut points: Vec<[f64; 2]> = items
         .iter()
@@ -192,7 +192,7 @@ fn curve(ui: &mut Ui, items: &[Spanned<Value>]) -> Input<Value> {
         if high > low { [low, high] } else { [low - 0.5, low + 0.5] }
     };
     let inner = rect.shrink(10.0);
-    // The scale stays while a point is dragged.
+    // The scale does not change while a point is dragged.
     let id = background.id.with("ends");
     let [xs, ys]: [[f64; 2]; 2] = ui.data(|data| data.get_temp(id)).unwrap_or([ends(0), ends(1)]);
     let screen = |[x, y]: [f64; 2]| {

@@ -1,10 +1,10 @@
-//! Fonts: those of egui, and one of the system for Chinese.
+//! Fonts: egui's fonts, and a system font for Chinese.
 
 use std::sync::Arc;
 
 use eframe::egui::{Context, FontData, FontDefinitions, FontFamily};
 
-/// Families with Chinese letters, the best first.
+/// Font families with Chinese characters, the best first.
 const FAMILIES: [&str; 12] = [
     "Noto Sans CJK SC",
     "Noto Sans SC",
@@ -20,8 +20,8 @@ const FAMILIES: [&str; 12] = [
     "SimSun",
 ];
 
-/// Adds a font of the system with Chinese letters. Returns its family, or `None` if the system has none; then they are
-/// shown as boxes.
+/// Adds a system font with Chinese characters. Returns its family, or `None` if the system has none; Chinese characters
+/// are then shown as boxes.
 #[must_use]
 pub fn add_chinese(context: &Context) -> Option<String> {
     let mut database = fontdb::Database::new();

@@ -1,4 +1,4 @@
-//! How a box of the graph looks, and where its inputs and outputs are.
+//! The appearance of a box of the graph, and the positions of its inputs and outputs.
 
 use eframe::egui::{
     Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, StrokeKind, TextureHandle, Vec2, Visuals, pos2, vec2,
@@ -7,7 +7,7 @@ use orogen::declare::spec::Locality;
 
 use crate::view::scene::{GraphBox, Kind};
 
-/// The width of a box of normal size.
+/// The width of a box at normal size.
 pub const WIDTH: f32 = 150.0;
 const TITLE: f32 = 34.0;
 const ROW: f32 = 15.0;
@@ -15,7 +15,7 @@ const ROW: f32 = 15.0;
 const PICTURE: f32 = 56.0;
 const GAP: f32 = 5.0;
 
-/// The color of a kind of boxes.
+/// The color of a kind of box.
 fn color(kind: Kind) -> Color32 {
     match kind {
         Kind::Node(Locality::Field) => Color32::from_rgb(74, 120, 176),
@@ -27,34 +27,34 @@ fn color(kind: Kind) -> Color32 {
     }
 }
 
-/// The size of a box of normal size.
+/// The size of a box at normal size.
 #[must_use]
 pub fn size(block: &GraphBox, has_pictures: bool) -> Vec2 {
     let rows = rows(block) as f32;
     let picture = if has_pictures { PICTURE + 2.0 * GAP } else { 0.0 };
     let below = match block.kind {
         Kind::Outside => ROW * rows + GAP,
-        // Inputs stand beside the picture of a node, and above that of a group.
+        // In a node, inputs are next to the picture; in a group, they are above it.
         Kind::Node(_) => (ROW * rows.max(1.0) + GAP).max(picture),
         Kind::Group => ROW * rows.max(1.0) + GAP + picture,
     };
     vec2(WIDTH, TITLE + below)
 }
 
-/// Inputs and outputs that stand below each other.
+/// Number of inputs and outputs below each other.
 fn rows(block: &GraphBox) -> usize {
-    // Other boxes have their output beside the title.
+    // Other boxes have their output next to the title.
     block.ports.len() + if block.kind == Kind::Group { block.outlets.len() } else { 0 }
 }
 
-/// The height of an input in a box of normal size.
+/// The vertical position of an input in a box at normal size.
 #[must_use]
 pub fn port(block: &GraphBox, k: usize) -> f32 {
     let above = if block.kind == Kind::Group { block.outlets.len() } else { 0 };
     TITLE + ROW * ((above + k) as f32 + 0.5)
 }
 
-/// The height of an output in a box of normal size.
+/// The vertical position of an output in a box at normal size.
 #[must_use]
 pub fn outlet(block: &GraphBox, k: usize) -> f32 {
     match block.kind {
@@ -63,21 +63,21 @@ pub fn outlet(block: &GraphBox, k: usize) -> f32 {
     }
 }
 
-/// The input nearest to a height in a box of normal size.
+/// The input nearest to a vertical position in a box at normal size.
 #[must_use]
 pub fn port_near(block: &GraphBox, y: f32) -> Option<usize> {
     (0..block.ports.len()).min_by(|a, b| (port(block, *a) - y).abs().total_cmp(&(port(block, *b) - y).abs()))
 }
 
-/// How a box is shown.
+/// The display state of a box.
 pub struct Shown<'a> {
     /// Whether it is selected.
     pub is_selected: bool,
-    /// Whether the view shows it.
+    /// Whether the view shows its layer.
     pub is_in_view: bool,
     /// Its small picture.
     pub picture: Option<&'a TextureHandle>,
-    /// The size of the graph; 1 is normal.
+    /// The scale of the graph; 1 is normal.
     pub zoom: f32,
 }
 
@@ -86,7 +86,7 @@ pub fn draw(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, 
     let zoom = shown.zoom;
     let round = 5.0 * zoom;
     if block.kind == Kind::Group {
-        // A second sheet behind tells that there is more in it.
+        // A second sheet behind the box indicates that it contains more.
         let behind = rect.translate(vec2(4.0, 4.0) * zoom);
         painter.rect_filled(behind, round, visuals.window_fill.gamma_multiply(0.8));
         painter.rect_stroke(behind, round, Stroke::new(1.0, visuals.window_stroke.color), StrokeKind::Outside);
@@ -136,7 +136,7 @@ fn words(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, sho
     if block.kind != Kind::Outside {
         write(below, subtitle, small.clone(), Color32::from_white_alpha(190));
     }
-    // Inputs end where the picture begins.
+    // Labels of inputs end where the picture begins.
     let has_picture = shown.picture.is_some() && matches!(block.kind, Kind::Node(_));
     let room = if has_picture { WIDTH - PICTURE - 2.0 * GAP } else { WIDTH };
     let left = Rect::from_min_size(rect.min, vec2(room * zoom, rect.height()));
@@ -153,7 +153,7 @@ fn words(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, sho
     }
 }
 
-/// A place at a side of a box.
+/// A position at a side of a box.
 #[must_use]
 pub fn at(rect: Rect, y: f32, zoom: f32, is_right: bool) -> Pos2 {
     pos2(if is_right { rect.right() } else { rect.left() }, rect.top() + y * zoom)

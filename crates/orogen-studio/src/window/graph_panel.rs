@@ -26,30 +26,30 @@ use crate::view::scene::{End, GraphBox, Kind, Scene};
 
 /// State of the panel.
 pub struct Graph {
-    /// Where the origin of the graph is in the panel, in points.
+    /// The position of the graph's origin in the panel, in points.
     pub(super) offset: Vec2,
-    /// Size of the graph; 1 is normal.
+    /// The scale of the graph; 1 is normal.
     pub(super) zoom: f32,
-    /// The group that is shown; empty for the whole recipe.
+    /// The shown group; empty for the whole recipe.
     pub(super) group: String,
-    /// What is shown of it.
+    /// The shown scene.
     pub(super) scene: Scene,
-    /// Places of boxes, in points of a graph of normal size. Those of boxes that are gone are kept for undo.
+    /// Positions of boxes, in points of a graph at normal size. Positions of removed boxes are kept for undo.
     pub(super) places: HashMap<String, Pos2>,
-    /// What the scene is of: the revision, the group, and whether there are pictures.
+    /// What the scene depends on: the revision, the group, and whether there are pictures.
     pub(super) placed: Option<(u64, String, bool)>,
     /// The search for a new node.
     search: Option<Search>,
     /// The node from which a wire is being drawn.
     wire: Option<String>,
-    /// Where the rectangle that selects began.
+    /// The corner where the selection rectangle started.
     rectangle: Option<Pos2>,
     /// The small pictures of nodes on the graphics card.
     textures: HashMap<String, (Arc<Picture>, TextureHandle)>,
     pub(super) wants_whole: bool,
 }
 
-/// The size at which names can still be read.
+/// The scale from which names are readable.
 const LEGIBLE: f32 = 0.62;
 
 impl Default for Graph {
@@ -76,19 +76,19 @@ impl Graph {
         self.search = Some(Search::new(self.to_graph(pos2(80.0, 60.0))));
     }
 
-    /// Shows the graph as a whole.
+    /// Shows the whole graph.
     pub fn show_whole(&mut self) {
         self.wants_whole = true;
     }
 
-    /// Shows what a group has; the whole recipe for the empty name.
+    /// Shows the content of a group; the whole recipe for the empty name.
     pub fn enter(&mut self, group: &str) {
         group.clone_into(&mut self.group);
         self.search = None;
         self.wants_whole = true;
     }
 
-    /// A place in the panel as one of the graph.
+    /// Converts a position in the panel to the graph.
     pub(super) fn to_graph(&self, at: Pos2) -> Pos2 {
         ((at - self.offset) / self.zoom).to_vec2().to_pos2()
     }
@@ -150,7 +150,7 @@ impl Graph {
         }
     }
 
-    /// The path of groups that leads to what is shown.
+    /// The path of groups that leads to the shown one.
     fn crumbs(&mut self, ui: &mut Ui, rect: Rect, language: Language) {
         if self.group.is_empty() {
             return;
@@ -184,7 +184,7 @@ impl Graph {
         Rect::from_min_size(origin + self.offset + place.to_vec2() * self.zoom, size * self.zoom)
     }
 
-    /// Brings new small pictures to the graphics card.
+    /// Uploads new small pictures to the graphics card.
     fn load(&mut self, ui: &Ui, studio: &Studio) {
         let nodes = self.scene.boxes.iter().filter_map(|block| block.outlets.first().or(block.nodes.first()));
         let mut textures = std::mem::take(&mut self.textures);
@@ -214,7 +214,7 @@ impl Graph {
             let room = (size - Vec2::splat(32.0)).max(Vec2::splat(40.0));
             self.zoom = (room.x / bounds.width()).min(room.y / bounds.height()).clamp(LEGIBLE, 1.0);
             self.offset = size / 2.0 - bounds.center().to_vec2() * self.zoom;
-            // Of what does not fit the end is shown, which is what the outputs read.
+            // If the graph does not fit, its end is shown, which is what the outputs read.
             if bounds.width() * self.zoom > room.x {
                 self.offset.x = size.x - 16.0 - bounds.right() * self.zoom;
             }
@@ -343,7 +343,7 @@ impl Graph {
         }
     }
 
-    /// Selects, shows or enters a box that is clicked.
+    /// Selects, shows or opens a box that is clicked.
     fn click(
         &mut self,
         ui: &Ui,
@@ -355,7 +355,7 @@ impl Graph {
     ) {
         if block.kind == Kind::Outside {
             if response.clicked() || response.double_clicked() {
-                // Its own group is shown, with it selected.
+                // Shows its own group, with the node selected.
                 self.enter(block.nodes.first().map_or("", |name| groups::group_of(name)));
                 actions.push(Action::Select(block.nodes.clone()));
             }
@@ -406,7 +406,7 @@ impl Graph {
         }
     }
 
-    /// Draws the wire that is being drawn, and connects it where it ends.
+    /// Draws the wire that is being dragged, and connects it where it ends.
     fn finish_wire(
         &mut self,
         ui: &Ui,
@@ -429,7 +429,7 @@ impl Graph {
         self.wire = None;
         let under = all().find(|(_, rect)| rect.expand(8.0 * self.zoom).contains(pointer));
         let Some((block, rect)) = under.filter(|(block, _)| !block.outlets.contains(&source)) else { return };
-        // On the title it is the first input; a node without inputs has a mask.
+        // On the title, the first input is used; a node without inputs has a mask.
         let near = graph_box::port_near(block, (pointer.y - rect.top()) / self.zoom).and_then(|k| block.ports.get(k));
         let (node, input) = match (near, block.kind) {
             (Some(port), _) => (port.node.clone(), port.key.clone()),
@@ -439,7 +439,7 @@ impl Graph {
         actions.push(Action::Edit(Edit::Connect { node, input, source: Input::Node(source) }));
     }
 
-    /// The search for a new node, and what it finds.
+    /// The search for a new node, and its result.
     fn find(&mut self, ui: &Ui, rect: Rect, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
         let Some(mut search) = self.search.take() else { return };
         let place = rect.min + self.offset + search.at.to_vec2() * self.zoom;
@@ -452,14 +452,14 @@ impl Graph {
             Found::Op(op) => op,
         };
         if drawing::OPS.contains(&op) {
-            // It is nothing without points.
+            // A drawing needs points.
             actions.push(Action::Draw(op));
             return;
         }
         let recipe = studio.document.recipe();
         let taken = recipe.nodes().iter().filter_map(|named| groups::rest(&named.name, &self.group)).collect();
         let name = groups::within(&self.group, &names::free(&names::of_op(op), &taken));
-        // The selected node is what it reads.
+        // The new node reads the selected node.
         let inputs = studio.selected.first().and_then(|selected| {
             let node = Node::named(op)?;
             let first = node.spec().inputs.first().map(|input| input.name);
@@ -467,7 +467,7 @@ impl Graph {
             Some((first.to_owned(), selected.clone()))
         });
         if inputs.is_none() {
-            // A free place near the pointer.
+            // A free position near the pointer.
             let size = |block: &GraphBox| graph_box::size(block, studio.has_thumbnails).into();
             let boxes = self.scene.boxes.iter();
             let taken: Vec<Area> =
@@ -476,7 +476,7 @@ impl Graph {
             self.places.insert(name.clone(), free.into());
         }
         if op == strokes::OP {
-            // Over something it changes heights; alone it is a mask.
+            // With an input it changes heights; without one it is a mask.
             actions.push(Action::Brush(if inputs.is_some() { Effect::Raise } else { Effect::Paint }));
         }
         let inputs = inputs.into_iter().collect();

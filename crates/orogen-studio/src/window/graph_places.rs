@@ -1,4 +1,5 @@
-//! Where the boxes of the graph stand while the recipe changes: known boxes stay, new ones get a free place.
+//! The positions of the boxes of the graph while the recipe changes: known boxes keep their positions, new ones get a
+//! free one.
 
 use std::collections::HashSet;
 
@@ -11,13 +12,13 @@ use crate::studio::Studio;
 use crate::view::arrangement::{self, Area};
 use crate::view::scene::{End, GraphBox, Kind, Scene};
 
-/// Places that are kept at most.
+/// Maximum number of positions that are kept.
 const KEPT: usize = 10_000;
 
 const GAP: f32 = 62.0;
 
 impl Graph {
-    /// What the place of a box is kept under.
+    /// The key under which the position of a box is kept.
     pub(super) fn key(&self, block: &GraphBox) -> String {
         match block.kind {
             Kind::Outside => format!("{}{}", self.group, block.id),
@@ -29,11 +30,11 @@ impl Graph {
         self.places.get(&self.key(block)).copied()
     }
 
-    /// The scene of the current text, with a place for each box.
+    /// Updates the scene to the current text, with a position for each box.
     pub(super) fn update(&mut self, studio: &Studio) {
         let recipe = studio.document.recipe();
         if !self.group.is_empty() && !groups::is_group(recipe, &self.group) {
-            // It is gone, or has another name: that of the selected node's group.
+            // The shown group no longer exists, or has another name: that of the selected node's group.
             let selected = studio.selected.first().map_or("", |name| groups::group_of(name));
             let is_renamed = selected.matches('/').count() == self.group.matches('/').count();
             let other = if is_renamed { selected } else { groups::group_of(&self.group) }.to_owned();
@@ -63,7 +64,7 @@ impl Graph {
         }
         let mut taken: Vec<Area> = Vec::new();
         let is_old: Vec<bool> = self.scene.boxes.iter().map(|block| before.contains(&self.key(block))).collect();
-        // Boxes that were there stay; others get a place that is free.
+        // Boxes that existed before keep their positions; others get a free one.
         for is_first in [true, false] {
             for (at, place) in found.iter().enumerate() {
                 let keeps = is_old.get(at) == Some(&true) && place.is_some();
@@ -77,7 +78,8 @@ impl Graph {
         }
     }
 
-    /// Where a box was before it was grouped or ungrouped: a node beside its group, a group in the middle of its nodes.
+    /// The position of a box before it was grouped or ungrouped: a node next to its group, a group at the center of its
+    /// nodes.
     fn former(&self, block: &GraphBox) -> Option<Pos2> {
         let outer = groups::group_of(block.id.trim_end_matches('/'));
         match block.kind {
@@ -95,7 +97,7 @@ impl Graph {
         }
     }
 
-    /// Where a new box should be: beside what it reads, or in the part that is seen.
+    /// The wanted position of a new box: next to the boxes that it reads, or in the visible part.
     fn wanted(&self, at: usize) -> Pos2 {
         let sources =
             self.scene.wires.iter().filter(|wire| wire.to == at).filter_map(|wire| self.scene.boxes.get(wire.from));
@@ -107,7 +109,7 @@ impl Graph {
         }
     }
 
-    /// Places all boxes in a tidy layout.
+    /// Arranges all boxes in an automatic layout.
     pub(super) fn tidy(&mut self, has_pictures: bool) {
         let boxes = &self.scene.boxes;
         let sizes: Vec<[f32; 2]> = boxes.iter().map(|block| graph_box::size(block, has_pictures).into()).collect();

@@ -5,34 +5,34 @@ use orogen::node::Node;
 
 use crate::catalogue::Language;
 
-/// A search, and where the node is to be.
+/// A search, and the position of the new node.
 #[derive(Debug, Default)]
 pub struct Search {
     text: String,
-    /// The place, in points of a graph of normal size.
+    /// The position, in points of a graph at normal size.
     pub at: Pos2,
     is_new: bool,
 }
 
-/// What came of a search.
+/// The result of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Found {
-    /// It goes on.
+    /// The search continues.
     Nothing,
     /// An op was chosen.
     Op(&'static str),
-    /// It was ended.
+    /// The search was closed.
     Closed,
 }
 
 impl Search {
-    /// A search for a node at a place.
+    /// A search for a node at a position.
     #[must_use]
     pub fn new(at: Pos2) -> Search {
         Search { at, is_new: true, ..Search::default() }
     }
 
-    /// Shows it at a place of the screen.
+    /// Shows the search at a position of the screen.
     pub fn show(&mut self, ui: &Ui, rect: Rect, place: Pos2, language: Language) -> Found {
         let mut chosen = Found::Nothing;
         let mut is_open = true;
@@ -69,7 +69,7 @@ impl Search {
     }
 }
 
-/// The ops whose name or description has all words of a text, those whose name begins with it first.
+/// The ops whose name or description contains all words of a text. Ops whose name begins with the text come first.
 #[must_use]
 pub fn matches(text: &str) -> Vec<&'static str> {
     let text = text.trim().to_lowercase();

@@ -1,4 +1,4 @@
-//! The colors of the recipe's surfaces and terrain classes, beside the view.
+//! The colors of the recipe's surfaces and terrain classes, next to the view.
 
 use eframe::egui::{CollapsingHeader, Ui};
 
@@ -8,7 +8,7 @@ use crate::editing::edit::Edit;
 use crate::editing::ground::Ground;
 use crate::studio::Studio;
 
-/// The most and fewest colors of a gradient.
+/// Minimum and maximum number of colors of a gradient.
 const GRADIENT: [usize; 2] = [2, 8];
 
 /// Shows fields for the colors.
@@ -23,7 +23,7 @@ pub fn show(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<
                 let mut edited = colors.clone();
                 ui.horizontal(|ui| {
                     edited.iter_mut().for_each(|color| drop(ui.color_edit_button_srgb(color)));
-                    // Only gradients have more colors than one.
+                    // Only gradients have more than one color.
                     if colors.len() > 1 {
                         if colors.len() < GRADIENT[1] && ui.small_button("+").clicked() {
                             edited.extend(colors.last().copied());

@@ -1,4 +1,4 @@
-//! The panel beside the view: the world, the recipe's own parameters, and the selected node.
+//! The panel next to the view: the world, the recipe's parameters, and the selected node.
 
 use eframe::egui::{self, CollapsingHeader, ComboBox, DragValue, RichText, TextEdit, Ui};
 use orogen::declare::{Input, Shape};
@@ -22,14 +22,14 @@ use crate::studio::Studio;
 pub struct Inspector {
     /// The name that is being typed for a node.
     renaming: Option<(String, String)>,
-    /// Whether the field of the name gets the keyboard.
+    /// Whether the name field should get the keyboard focus.
     wants_focus: bool,
     /// Expressions that are being typed.
     expressions: ExpressionFields,
 }
 
 impl Inspector {
-    /// Begins to rename a node or a group.
+    /// Starts renaming a node or a group.
     pub fn rename(&mut self, name: &str) {
         self.renaming = Some((name.to_owned(), name.to_owned()));
         self.wants_focus = true;
@@ -58,7 +58,7 @@ impl Inspector {
         });
     }
 
-    /// A button that makes a formula of a number, and a number of a formula.
+    /// A button that converts a number to a formula, and a formula to a number.
     #[allow(clippy::too_many_arguments, reason = "all of it is of this one frame")]
     fn formula(
         &mut self,
@@ -95,7 +95,7 @@ impl Inspector {
         }
     }
 
-    /// The name of a node or group, which can be changed. Returns the new one.
+    /// A field for the name of a node or group. Returns the new name.
     fn name(&mut self, ui: &mut Ui, name: &str, language: Language) -> Option<String> {
         match &mut self.renaming {
             Some((of, typed)) if of == name => {
@@ -233,7 +233,7 @@ impl Inspector {
     }
 }
 
-/// Several nodes are selected: what can be done with all of them.
+/// Several nodes are selected: actions for all of them.
 fn several(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
     let count = studio.selected.len().to_string();
     ui.weak(language.fill("inspector.several", &[("count", &count)]));
@@ -313,7 +313,7 @@ fn parameters(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Ve
     });
 }
 
-/// A field for what an input reads: a node, or a number.
+/// A field for the source of an input: a node, or a number.
 fn source(
     ui: &mut Ui,
     (node, key, about, is_required): (&str, &str, &str, bool),

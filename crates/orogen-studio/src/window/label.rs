@@ -2,7 +2,7 @@
 
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2};
 
-/// A text on a dark ground.
+/// A text on a dark background.
 pub fn label(painter: &Painter, at: Pos2, align: Align2, text: &str) {
     if !text.is_empty() {
         let galley = painter.layout_no_wrap(text.to_owned(), FontId::monospace(11.0), Color32::WHITE);

@@ -1,4 +1,4 @@
-//! The light of the view in space, which is that of rendered pictures.
+//! The light of the 3D view, which is the light of rendered pictures.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -9,7 +9,7 @@ use orogen::output::render::lighting::Lighting;
 
 use crate::studio::Studio;
 
-/// What the light in the view depends on beside the sun.
+/// What the light of the view depends on, in addition to the sun.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Block {
     /// The diagonal of the land, in units of the view.
@@ -20,10 +20,10 @@ pub struct Block {
     pub cell: f64,
 }
 
-/// The light, made again where the sun or the land changes.
+/// The light, computed again when the sun or the land changes.
 #[derive(Debug, Default)]
 pub struct Light {
-    /// The sky for an elevation of the sun. One takes longer to make than a frame may.
+    /// The sky for an elevation of the sun. Computing one takes longer than a frame.
     sky: Option<(f64, Lighting)>,
     making: Option<Receiver<(f64, Lighting)>>,
     shader: Option<([f64; 2], Block, Arc<LightShader>)>,
@@ -31,7 +31,7 @@ pub struct Light {
 
 impl Light {
     /// The light for a sun (degrees clockwise from north, and above the horizon) and a block of land. While the sky for
-    /// another elevation is being made, it is the last one.
+    /// another elevation is being computed, the last one is returned.
     pub fn of(&mut self, studio: &Studio, context: &Context, sun: [f64; 2], block: Block) -> Arc<LightShader> {
         let [azimuth, elevation] = sun;
         let made = self.making.as_ref().map(Receiver::try_recv);
@@ -45,7 +45,7 @@ impl Light {
             let (sender, receiver) = channel();
             let context = context.clone();
             let started = studio.session().start(move |_| {
-                // The view may be gone.
+                // The view may already be closed.
                 let _ = sender.send((elevation, Lighting::new([azimuth, elevation])));
                 context.request_repaint();
             });

@@ -1,4 +1,4 @@
-//! The brush on the map: its settings, the ring at the pointer, and the stroke that grows while the button is down.
+//! The brush on the map: its settings, the ring at the pointer, and the stroke while the button is pressed.
 
 use eframe::egui::{self, Align2, Color32, CursorIcon, Event, Key, Pos2, Rect, Response, Stroke, Ui, Vec2};
 
@@ -14,13 +14,13 @@ use crate::view::map_view::MapView;
 /// State of the brush.
 #[derive(Default)]
 pub struct MapBrush {
-    /// Its settings; `None` until it is used.
+    /// The settings; `None` until it is used.
     brush: Option<Brush>,
     /// The stroke that is being painted.
     painting: Option<Painting>,
 }
 
-/// The names of an effect and of its help, as keys of the catalogue.
+/// The names of an effect and of its help, as keys of the catalog.
 #[must_use]
 pub fn names(effect: Effect) -> [&'static str; 2] {
     match effect {
@@ -31,11 +31,11 @@ pub fn names(effect: Effect) -> [&'static str; 2] {
     }
 }
 
-/// The factor by which a press of a key changes the radius.
+/// The factor by which a key press changes the radius.
 const STEP: f64 = 1.2;
 
 impl MapBrush {
-    /// The brush with an effect; at first it fits the picture.
+    /// The brush with an effect. A new brush suits the picture.
     fn with(&mut self, effect: Effect, frame: &Frame) -> &mut Brush {
         let brush = self.brush.get_or_insert_with(|| {
             let window = frame.window();
@@ -48,7 +48,7 @@ impl MapBrush {
         brush
     }
 
-    /// Its settings.
+    /// Shows the settings.
     pub fn settings(&mut self, ui: &mut Ui, effect: Effect, frame: &Frame, language: Language) {
         let brush = self.with(effect, frame);
         let share = Number { range: [0.0, 1.0], default: 0.5, unit: "", is_whole: false };
@@ -70,7 +70,7 @@ impl MapBrush {
         });
     }
 
-    /// Paints where the button is down; `[`, `]` and Ctrl with the wheel change the radius.
+    /// Paints while the button is pressed; `[`, `]` and Ctrl with the wheel change the radius.
     pub fn paint(
         &mut self,
         ui: &Ui,
@@ -95,7 +95,7 @@ impl MapBrush {
         let is_down = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_down());
         let begins = is_down && ui.input(|input| input.pointer.primary_pressed());
         match &mut self.painting {
-            // A press and its release may come in one frame.
+            // A press and its release may occur in one frame.
             None if begins || response.clicked() => {
                 let at = ui.input(|input| input.pointer.press_origin()).or(response.interact_pointer_pos());
                 let Some(painting) = at.and_then(|at| begin(*brush, studio, world(at))) else { return };
@@ -113,7 +113,7 @@ impl MapBrush {
                     });
                     moved.collect::<Vec<[f64; 2]>>()
                 });
-                // All of them: the pointer may move far between two frames.
+                // All movements, because the pointer may move far between two frames.
                 if moves.into_iter().filter(|at| painting.continue_to(*at)).count() > 0 {
                     actions.push(Action::Edit(painting.edit()));
                 }
@@ -126,8 +126,7 @@ impl MapBrush {
         }
     }
 
-    /// Draws the ring of the radius and of the hardness around the pointer, and the line of the stroke that is being
-    /// painted.
+    /// Draws the rings of the radius and of the hardness around the pointer, and the line of the current stroke.
     pub fn draw(
         &self,
         painter: &egui::Painter,

@@ -26,17 +26,17 @@ use crate::view::map_view::MapView;
 #[derive(Default)]
 pub struct MapPanel {
     view: Option<MapView>,
-    /// The picture, and the frame that it is of.
+    /// The picture, and the identity of its frame.
     texture: Option<(TextureHandle, frame::Key)>,
     /// The ends of the profile, in metres.
     profile: Option<[[f64; 2]; 2]>,
     tool: Tool,
     brush: MapBrush,
-    /// The points of what is being drawn.
+    /// The points of the current drawing.
     drawn: Vec<[f64; 2]>,
-    /// The region that was asked for last.
+    /// The last requested region.
     asked: Option<Region>,
-    /// The picture with which later ones are compared.
+    /// The picture that later ones are compared with.
     kept: Option<Kept>,
     contours: ContourLines,
 }
@@ -46,33 +46,33 @@ struct Kept {
     texture: TextureHandle,
     /// Its west, north, east and south sides in metres.
     sides: [f64; 4],
-    /// The text of the recipe that it is of.
+    /// The text of its recipe.
     text: String,
     /// The share of the view in which it is shown, from the left.
     share: f32,
-    /// Whether both pictures are shown whole, beside each other.
+    /// Whether both pictures are shown completely, side by side.
     is_beside: bool,
 }
 
-/// What a drag or a click on the map does.
+/// The action of a drag or a click on the map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Tool {
-    /// It moves the map.
+    /// Moves the map.
     #[default]
     Pan,
-    /// It draws the line of a profile.
+    /// Draws the line of a profile.
     Profile,
-    /// It draws a line or an area: the op.
+    /// Draws a line or an area, by its op.
     Draw(&'static str),
-    /// It paints.
+    /// Paints with a brush.
     Brush(Effect),
 }
 
-/// The longest side of a picture.
+/// Maximum side of a picture.
 const LARGEST: usize = 4096;
 
 impl MapPanel {
-    /// Shows all.
+    /// Shows the whole map.
     pub fn show_whole(&mut self) {
         self.view = None;
     }
@@ -95,7 +95,7 @@ impl MapPanel {
             window.right() as f64 * window.cell,
             window.bottom() as f64 * window.cell,
         ];
-        // Beside each other, A has the left half, and this picture the right one.
+        // Side by side, picture A is in the left half, and the current picture in the right half.
         let whole_rect = rect;
         let is_beside = self.kept.as_ref().is_some_and(|kept| kept.is_beside);
         let rect = if is_beside { rect.with_min_x(rect.center().x) } else { rect };
@@ -103,7 +103,7 @@ impl MapPanel {
         let mut view = self.view.unwrap_or_else(|| MapView::fitting(bounds, size));
         let before = view;
         let is_brush = matches!(self.tool, Tool::Brush(_));
-        // A brush paints over the points of a drawing.
+        // With a brush, the points of a drawing cannot be dragged.
         if is_brush || !self.handles(ui, rect, studio, &view, actions) {
             self.navigate(ui, &response, rect, &mut view);
         }
@@ -191,7 +191,7 @@ impl MapPanel {
         });
     }
 
-    /// Keeps the picture, to be compared with those after later changes.
+    /// Controls for keeping the picture, to compare it with pictures after later changes.
     fn comparison(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
         match &mut self.kept {
             None => {
@@ -222,18 +222,18 @@ impl MapPanel {
         }
     }
 
-    /// Begins to draw a line or an area.
+    /// Starts drawing a line or an area.
     pub fn draw(&mut self, op: &'static str) {
         self.tool = Tool::Draw(op);
         self.drawn.clear();
     }
 
-    /// Takes a brush.
+    /// Selects a brush.
     pub fn take_brush(&mut self, effect: Effect) {
         self.tool = Tool::Brush(effect);
     }
 
-    /// Adds the points that are clicked; a double click or Enter ends, Escape drops them.
+    /// Adds a point with each click; a double click or Enter ends the drawing, Escape discards it.
     fn draw_line(
         &mut self,
         ui: &Ui,
@@ -269,7 +269,7 @@ impl MapPanel {
         }
     }
 
-    /// Handles at the points of the selected drawing. Returns whether one is being moved.
+    /// Handles at the points of the selected drawing. Returns whether one is being dragged.
     fn handles(&self, ui: &Ui, rect: Rect, studio: &Studio, view: &MapView, actions: &mut Vec<Action>) -> bool {
         let Some((name, mut points)) = selected(studio) else { return false };
         let size = [rect.width(), rect.height()];
@@ -301,7 +301,7 @@ impl MapPanel {
         is_moving
     }
 
-    /// Draws what is being drawn, and the selected drawing.
+    /// Draws the current drawing, and the selected one.
     fn draw_drawing(&self, painter: &egui::Painter, studio: &Studio, screen: impl Fn([f64; 2]) -> egui::Pos2) {
         let draw = |points: &[[f64; 2]], is_closed: bool| {
             let mut line: Vec<egui::Pos2> = points.iter().map(|point| screen(*point)).collect();
@@ -356,7 +356,7 @@ impl MapPanel {
         }
     }
 
-    /// The pictures follow the view: it is shown at its own resolution.
+    /// Requests pictures for the view, so that it is shown at its own resolution.
     fn follow(&mut self, studio: &Studio, view: &MapView, size: [f32; 2], actions: &mut Vec<Action>) {
         if self.view.is_none() {
             return;
@@ -442,7 +442,7 @@ impl MapPanel {
     }
 }
 
-/// The picture of a frame, of large ones every second, third, ... sample.
+/// The picture of a frame. Large frames are reduced to every second, third, ... sample.
 fn image(frame: &Frame) -> ColorImage {
     let window = frame.window();
     let step = window.width.max(window.height).div_ceil(LARGEST).max(1);
@@ -458,8 +458,8 @@ fn image(frame: &Frame) -> ColorImage {
     ColorImage::from_rgba_unmultiplied([window.width.div_ceil(step), rows.count()], &pixels)
 }
 
-/// The sides of the picture of a frame: west, north, east and south in metres. Samples are points: a pixel of the
-/// picture is around one.
+/// The sides of the picture of a frame: west, north, east and south in metres. Samples are points, and each is at the
+/// center of a pixel.
 fn sides(frame: &Frame) -> [f64; 4] {
     let window = frame.window();
     [window.x, window.y, window.right(), window.bottom()].map(|side| (side as f64 - 0.5) * window.cell)

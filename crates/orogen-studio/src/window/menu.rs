@@ -1,4 +1,4 @@
-//! The bar at the top: menus, undo and redo, what is shown, language and colors.
+//! The bar at the top: menus, undo and redo, shown layer, language and colors.
 
 use eframe::egui::{self, ComboBox, Ui};
 use orogen::io::palette::named;
@@ -51,7 +51,7 @@ pub fn show(ui: &mut Ui, studio: Option<&Studio>, settings: &Settings, language:
     });
 }
 
-/// The name of a command, with what it would undo or redo.
+/// The name of a command; for undo and redo, with the name of the step.
 fn label(command: Command, studio: Option<&Studio>, language: Language) -> String {
     let name = command.entry().map_or("", |entry| language.text(entry.name));
     let history = studio.map(|studio| studio.document.history());
@@ -66,7 +66,7 @@ fn label(command: Command, studio: Option<&Studio>, language: Language) -> Strin
     }
 }
 
-/// Whether a command can be used now.
+/// Whether a command is available now.
 #[must_use]
 pub fn is_enabled(command: Command, studio: Option<&Studio>) -> bool {
     let Some(studio) = studio else { return command.entry().is_some_and(|entry| !entry.needs_document) };
@@ -103,7 +103,7 @@ fn preferences(ui: &mut Ui, settings: &Settings, language: Language, actions: &m
     });
 }
 
-/// What is shown: layer and palette.
+/// Controls for the shown layer and its palette.
 fn shown(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
     ui.label(language.text("menu.layer"));
     ComboBox::from_id_salt("layer").selected_text(&studio.look.layer).height(400.0).show_ui(ui, |ui| {

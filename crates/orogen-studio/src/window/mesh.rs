@@ -1,7 +1,7 @@
-//! The mesh of the view in space: a lattice over the land, with walls and water. Its heights come from a texture.
+//! The mesh of the 3D view: a lattice over the land, with walls and water. Its heights come from a texture.
 
-/// A vertex: position from 0, 0 to 1, 1; 1 for the lower end of a wall; and what it is part of, as `relief.wgsl` has
-/// it.
+/// A vertex: position from 0, 0 to 1, 1; 1 for the lower end of a wall; and the part that it belongs to, with the codes
+/// of `relief.wgsl`.
 pub type Vertex = [f32; 4];
 
 /// A mesh of triangles, and the lines of its lattice.

@@ -1,4 +1,4 @@
-//! The window: draws the state of the studio, and turns what a person does into actions.
+//! The window: draws the state of the studio, and converts user input to actions.
 //!
 //! Panels read the state and return [`action::Action`]s; [`app`] carries them out, and nothing else changes the state.
 

@@ -1,4 +1,4 @@
-//! The dialogs that are open.
+//! The open dialogs.
 
 use eframe::egui::Context;
 
@@ -11,25 +11,25 @@ use crate::catalogue::Language;
 use crate::preview::worker::Wake;
 use crate::studio::Studio;
 
-/// The dialogs that are open.
+/// The open dialogs.
 #[derive(Default)]
 pub struct OpenDialogs {
-    /// The choice of a file.
+    /// The dialog for choosing a file.
     pub files: Option<FileDialog>,
-    /// The colors of the view.
+    /// The editor for the colors of the view.
     pub ramp: Option<RampEditor>,
-    /// An export.
+    /// The export dialog.
     pub export: Option<ExportDialog>,
-    /// The commands by name.
+    /// The command palette.
     pub palette: Option<CommandPalette>,
-    /// The list of shortcuts.
+    /// Whether the list of shortcuts is shown.
     pub has_shortcuts: bool,
     /// A message: title and text.
     pub message: Option<(String, String)>,
 }
 
 impl OpenDialogs {
-    /// Shows the dialogs that are open. `shown` is the document with what the view in space shows, if there is one.
+    /// Shows the open dialogs. `shown` is the document with the settings of the 3D view, if there is one.
     pub fn show(
         &mut self,
         context: &Context,

@@ -21,41 +21,41 @@ use crate::preview::worker::Wake;
 use crate::settings::Settings;
 use crate::studio::Studio;
 
-/// What the middle shows.
+/// The main view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum View {
-    /// The land in space.
+    /// The land in 3D.
     Relief,
     /// The land from above.
     Map,
 }
 
-/// What is below the view.
+/// The panel below the view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Below {
-    /// The nodes.
+    /// The graph of nodes.
     Graph,
     /// The text of the recipe.
     Text,
     /// Measurements.
     Analysis,
-    /// Measurements beside those of real land.
+    /// Measurements compared with real land.
     Real,
-    /// Pictures of other seeds and values.
+    /// Pictures with other seeds and values.
     Variants,
 }
 
 /// The panels, and which of them are shown.
 pub struct Panels {
-    /// What the middle shows.
+    /// The main view.
     pub view: View,
-    /// What is below the view.
+    /// The panel below the view.
     pub below: Below,
-    /// The land in space.
+    /// The land in 3D.
     pub relief: ReliefPanel,
     /// The land from above.
     pub map: MapPanel,
-    /// The nodes.
+    /// The graph of nodes.
     pub graph: Graph,
     /// The text of the recipe.
     pub text: TextPanel,
@@ -66,22 +66,22 @@ pub struct Panels {
     start: StartPage,
 }
 
-/// What the panels show.
+/// The state that the panels show.
 pub struct Shown<'a> {
     /// The state of the document; `None` on the start page.
     pub studio: Option<&'a Studio>,
-    /// What is remembered between runs.
+    /// Settings that are remembered between runs.
     pub settings: &'a Settings,
     /// The graphics card that computes previews.
     pub gpu: Option<&'a Gpu>,
-    /// What the device of the window can draw.
+    /// The abilities of the window's device.
     pub ability: Option<Ability>,
     /// The language.
     pub language: Language,
 }
 
 impl Panels {
-    /// The relief above the graph.
+    /// The panels with the 3D view above the graph.
     #[must_use]
     pub fn new(wake: &Wake) -> Panels {
         Panels {
@@ -98,14 +98,14 @@ impl Panels {
         }
     }
 
-    /// Forgets the document that was open.
+    /// Drops the state of the previous document.
     pub fn reset(&mut self) {
         self.inspector = Inspector::default();
         (self.graph, self.text, self.map) = (Graph::default(), TextPanel::default(), MapPanel::default());
         self.relief.show_whole();
     }
 
-    /// Shows everything in each view.
+    /// Shows the whole land in each view.
     pub fn show_whole(&mut self) {
         self.relief.show_whole();
         self.map.show_whole();
@@ -147,7 +147,7 @@ impl Panels {
                         }
                     }
                 });
-                // What has little to show does not make the panel smaller.
+                // A panel with little content keeps its size.
                 ui.set_min_size(ui.available_size());
                 match self.below {
                     Below::Graph => self.graph.show(ui, studio, language, actions),

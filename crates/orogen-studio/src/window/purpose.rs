@@ -1,20 +1,20 @@
-//! What a file is chosen for.
+//! The purpose of choosing a file.
 
-/// What a file is chosen for.
+/// The purpose of choosing a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
-    /// To be opened.
+    /// Opening a document.
     Open,
-    /// To be saved to.
+    /// Saving the document.
     Save,
-    /// A palette is read.
+    /// Reading a palette.
     OpenPalette,
-    /// A palette is written.
+    /// Writing a palette.
     SavePalette,
 }
 
 impl Purpose {
-    /// The key of the dialog's title.
+    /// The catalog key of the dialog's title.
     #[must_use]
     pub fn title(self) -> &'static str {
         match self {
@@ -41,6 +41,6 @@ impl Purpose {
     }
 }
 
-/// Extensions of recipes and of the most common files of heights, and those of palettes.
+/// Extensions of recipes and common files of heights, and of palettes.
 const PALETTES: [&str; 4] = ["toml", "cpt", "gpl", "txt"];
 const RECIPES: [&str; 9] = ["toml", "json", "tif", "tiff", "asc", "hgt", "npy", "exr", "zarr"];

@@ -1,4 +1,4 @@
-//! The dialog in which a color ramp is edited; the view follows.
+//! The dialog for editing a color ramp; the view is updated meanwhile.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -24,14 +24,14 @@ pub struct RampEditor {
     selected: usize,
 }
 
-/// Colors of the picture of a ramp.
+/// Number of colors in the picture of a ramp.
 const STEPS: usize = 256;
 
 impl RampEditor {
-    /// A dialog for a palette. Its name becomes that of a variant, unless it is an edited one already.
+    /// A dialog for a palette. It gets the name of a variant, unless it is already an edited palette.
     ///
     /// # Errors
-    /// If the palette is no ramp.
+    /// If the palette is not a ramp.
     pub fn new(palette: &Palette, is_edited: bool) -> Result<RampEditor> {
         let refused = || {
             let message = format!(
@@ -50,18 +50,18 @@ impl RampEditor {
     /// A dialog for a palette in a file.
     ///
     /// # Errors
-    /// If the file cannot be read, or holds no ramp.
+    /// If the file cannot be read, or does not contain a ramp.
     pub fn open(path: &Path) -> Result<RampEditor> {
         RampEditor::new(&read(path)?, true)
     }
 
-    /// The palette as colors of the view.
+    /// The edited palette as coloring of the view.
     #[must_use]
     pub fn coloring(&self) -> Coloring {
         Coloring::Edited(Arc::new(self.ramp.palette().clone()))
     }
 
-    /// The name of the file that is suggested.
+    /// The suggested file name.
     #[must_use]
     pub fn file_name(&self) -> String {
         format!("{}.toml", self.ramp.palette().name)
@@ -93,7 +93,7 @@ impl RampEditor {
         is_open && !context.input(|input| input.key_pressed(Key::Escape))
     }
 
-    /// Name, another palette to start from, files.
+    /// Shows the name, a choice of another palette to start from, and files.
     fn start(&mut self, ui: &mut Ui, language: Language, actions: &mut Vec<Action>) {
         let mut name = self.ramp.palette().name.clone();
         let field = ui.add(TextEdit::singleline(&mut name).desired_width(120.0));
@@ -195,7 +195,7 @@ impl RampEditor {
     }
 }
 
-/// A position with as many digits as a person can see.
+/// A position with as many digits as are visible.
 fn rounded(at: f64, span: f64) -> f64 {
     let step = libm::pow(10.0, libm::log10(span / 500.0).floor());
     let text = format!("{:.12}", (at / step).round() * step);

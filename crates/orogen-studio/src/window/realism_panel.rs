@@ -1,4 +1,4 @@
-//! How real the land in view is: its figures beside those of real land.
+//! A comparison of the visible land with real land.
 
 use std::sync::Arc;
 
@@ -17,16 +17,16 @@ pub struct RealismPanel {
     survey: Survey,
 }
 
-/// Width of a column of figures, and of the bar of each.
+/// Width of a column of statistics, and of the bar of each.
 const COLUMN: f32 = 470.0;
 const BAR: f32 = 130.0;
 
-/// Places beyond this many times the distance from the median to the 10 % or 90 % quantile are drawn at the end of the
+/// Values beyond this many times the distance from the median to the 10 % or 90 % quantile are drawn at the end of the
 /// bar.
 const FURTHEST: f64 = 3.0;
 
 impl RealismPanel {
-    /// A panel without figures.
+    /// A panel without statistics.
     #[must_use]
     pub fn new(wake: Wake) -> RealismPanel {
         RealismPanel { survey: Survey::new(wake) }
@@ -34,7 +34,7 @@ impl RealismPanel {
 
     /// Shows the panel.
     pub fn show(&mut self, ui: &mut Ui, studio: &Studio, language: Language) {
-        // Drafts and coarse pictures would be measured for nothing.
+        // Drafts and coarse pictures are not worth measuring.
         if let Some(frame) = studio.frame.as_ref().filter(|frame| frame.quality == Quality::Fine) {
             self.survey.ask(&studio.session(), frame);
         }
@@ -57,7 +57,7 @@ impl RealismPanel {
     }
 }
 
-/// All figures, in as many columns as there is space for.
+/// All statistics, in as many columns as fit.
 fn table(ui: &mut Ui, measures: &Measures, language: Language) {
     let columns = ((ui.available_width() / COLUMN) as usize).clamp(1, 3);
     let rows = FIGURES.len().div_ceil(columns);
@@ -119,12 +119,12 @@ fn color(place: f64) -> Color32 {
     }
 }
 
-/// The name of a figure in the language of the interface.
+/// The name of a statistic in the language of the interface.
 fn name(key: &str, language: Language) -> Option<&'static str> {
     NAMES.iter().find(|(of, _)| *of == key).map(|(_, text)| language.text(text))
 }
 
-/// The texts of the figures by their keys.
+/// The texts of the statistics by key.
 const NAMES: [(&str, &str); 24] = [
     ("relief", "figure.relief"),
     ("hypsometric_integral", "figure.hypsometric_integral"),

@@ -1,4 +1,4 @@
-//! The view in space, drawn by the graphics card into a picture of its own, with depths, and then into the window.
+//! The 3D view, drawn by the graphics card first into a separate picture with depths, and then into the window.
 
 use std::sync::Arc;
 
@@ -11,15 +11,15 @@ use wgpu::util::DeviceExt as _;
 use super::mesh::{Mesh, Vertex};
 use crate::preview::frame::{Frame, Key};
 
-/// What the shaders read, as `Scene` in `relief.wgsl`.
+/// The input of the shaders, like `Scene` in `relief.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Scene {
-    /// From the view's space to clip space.
+    /// The matrix from the view's space to clip space.
     pub matrix: [[f32; 4]; 4],
-    /// Its inverse.
+    /// The inverse matrix.
     pub inverse: [[f32; 4]; 4],
-    /// Half the width and depth, units of height for a metre, the height at 0.
+    /// Half the width and depth, units of height per metre, the height at 0.
     pub extent: [f32; 4],
     /// Interval of contours, their strength, the base, the strength of shadows.
     pub lines: [f32; 4],
@@ -32,22 +32,22 @@ pub struct Scene {
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// Vertices along the longer side of the mesh: on a graphics card, and where a processor draws.
+/// Number of vertices along the longer side of the mesh: on a graphics card, and if a CPU draws.
 const VERTICES: [usize; 2] = [1024, 256];
 
-/// What an adapter can do at a good pace.
+/// The abilities of an adapter at an acceptable speed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Ability {
     /// The format of the window.
     pub target: wgpu::TextureFormat,
-    /// Whether a processor draws in place of a graphics card.
+    /// Whether a CPU draws instead of a graphics card.
     pub is_software: bool,
-    /// The longest side of a texture.
+    /// Maximum side of a texture.
     pub largest: usize,
 }
 
 impl Ability {
-    /// That of the window's adapter.
+    /// The abilities of the window's adapter.
     #[must_use]
     pub fn of(state: &RenderState) -> Ability {
         Ability {
@@ -79,7 +79,7 @@ pub struct Drawing {
     pub has_wire: bool,
     /// The size of the picture in pixels.
     pub size: [u32; 2],
-    /// The adapter.
+    /// The abilities of the adapter.
     pub ability: Ability,
 }
 
@@ -134,17 +134,17 @@ struct Buffers {
     lines: (wgpu::Buffer, u32),
 }
 
-/// The picture that is drawn into.
+/// The picture into which the land is drawn.
 struct Target {
     size: [u32; 2],
     color: wgpu::TextureView,
-    /// The same with several samples for each pixel, if there are any.
+    /// The same picture with several samples per pixel, if they are used.
     many: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
     bind: wgpu::BindGroup,
 }
 
-/// All that is on the graphics card.
+/// All resources on the graphics card.
 struct Relief {
     ability: Ability,
     ground: wgpu::RenderPipeline,
@@ -184,7 +184,7 @@ fn filled(
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// Entry of a texture in a layout.
+/// The layout entry of a texture.
 fn texture(binding: u32, filterable: bool) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
@@ -198,7 +198,7 @@ fn texture(binding: u32, filterable: bool) -> wgpu::BindGroupLayoutEntry {
     }
 }
 
-/// Entry of a sampler in a layout.
+/// The layout entry of a sampler.
 fn sampler(binding: u32) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
@@ -210,7 +210,7 @@ fn sampler(binding: u32) -> wgpu::BindGroupLayoutEntry {
 
 impl Relief {
     fn new(device: &wgpu::Device, ability: Ability, light: &LightShader) -> Relief {
-        // The text is the same for all light.
+        // The shader code is the same for all light.
         let words = light.words.len().div_ceil(4);
         let text = format!("const WORDS = {words}u;\n{}{}", light.text, include_str!("relief.wgsl"));
         let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -256,7 +256,7 @@ impl Relief {
             attributes: &attributes,
         })];
         let land = |vertex: &str, fragment: &str, topology: wgpu::PrimitiveTopology| {
-            // Lines are drawn over what is there. What is behind the land is drawn first, and hides nothing.
+            // Lines are drawn over existing pixels. The background behind the land is drawn first, and hides nothing.
             let blend = (fragment == "wire").then_some(wgpu::BlendState::ALPHA_BLENDING);
             let hides = vertex == "corner" && blend.is_none();
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -341,7 +341,7 @@ impl Relief {
         }
     }
 
-    /// Brings what has changed to the graphics card.
+    /// Uploads changed data to the graphics card.
     fn load(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, drawing: &Drawing) {
         let frame = &drawing.frame;
         let window = frame.window();
@@ -402,7 +402,7 @@ impl Relief {
             contents: bytemuck::cast_slice(&words),
             usage: wgpu::BufferUsages::UNIFORM,
         });
-        // Rows of a width that every device has; each texel is three numbers.
+        // Rows have a width that every device supports; each texel is three numbers.
         const COLUMNS: usize = 64;
         let mut texels: Vec<f32> =
             light.tables.chunks(3).flat_map(|three| three.iter().copied().chain([1.0])).collect();

@@ -1,4 +1,4 @@
-//! The view in space.
+//! The 3D view.
 
 use std::sync::Arc;
 
@@ -21,12 +21,12 @@ use crate::view::camera::Camera;
 pub struct ReliefPanel {
     /// The camera.
     pub camera: Camera,
-    /// Heights are drawn this many times as high; `None` for a number that suits the land.
+    /// Vertical exaggeration; `None` for a number that suits the land.
     exaggeration: Option<f64>,
     has_water: bool,
     has_shadows: bool,
     has_wire: bool,
-    /// The sun while it is being moved; shadows follow when it stands.
+    /// The sun while it is being moved; shadows are updated when it stops.
     sun: Option<[f64; 2]>,
     light: Light,
 }
@@ -45,18 +45,18 @@ impl Default for ReliefPanel {
     }
 }
 
-/// What the view shows, as the choices of a render.
+/// The settings of the view, for a render.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShownView {
     /// The camera: degrees clockwise from north, and degrees above the horizon.
     pub camera: [f64; 2],
-    /// The sun, likewise.
+    /// The sun: degrees clockwise from north, and degrees above the horizon.
     pub sun: [f64; 2],
-    /// How many times as high heights are drawn.
+    /// The vertical exaggeration.
     pub exaggeration: f64,
 }
 
-/// A drag of the middle of the view is a walk; keys fly by this part of the distance in a second.
+/// Speed of flying by keys, relative to the distance, per second.
 const FLIGHT: f32 = 0.9;
 
 impl ReliefPanel {
@@ -85,7 +85,7 @@ impl ReliefPanel {
         };
         let pixels = ui.pixels_per_point();
         let largest = ability.largest as f32;
-        // A processor draws fewer pixels while something moves.
+        // While something moves, a CPU draws fewer pixels.
         let is_moving = response.dragged() || ui.input(|input| input.smooth_scroll_delta().y != 0.0);
         let fewer = if ability.is_software && is_moving { 0.5 } else { 1.0 };
         let size = [rect.width(), rect.height()].map(|side| (side * pixels * fewer).round().clamp(1.0, largest) as u32);
@@ -101,7 +101,7 @@ impl ReliefPanel {
         painter.add(Callback::new_paint_callback(rect, drawing));
         legend::draw(&painter, rect.min + egui::vec2(10.0, 10.0), frame);
         if fewer < 1.0 {
-            // The full picture once it stands.
+            // The full picture is drawn once the movement stops.
             ui.ctx().request_repaint();
         }
         if response.double_clicked()
@@ -116,14 +116,14 @@ impl ReliefPanel {
             let text = readout(frame, self.world(frame, place), language);
             let galley = painter.layout_no_wrap(text, FontId::monospace(11.0), egui::Color32::WHITE);
             let at = rect.left_bottom() + egui::vec2(12.0, -12.0 - galley.size().y);
-            // Light ground would swallow light letters.
+            // On light ground, light text would not be readable.
             let behind = Rect::from_min_size(at, galley.size()).expand(4.0);
             painter.rect_filled(behind, 3.0, egui::Color32::from_black_alpha(150));
             painter.galley(at, galley, egui::Color32::WHITE);
         }
     }
 
-    /// The view as the choices of a render: where the camera is, and how many times as high heights are drawn, to a
+    /// The settings of the view for a render: the position of the camera, and the vertical exaggeration, rounded to a
     /// tenth.
     #[must_use]
     pub fn shown(&self, studio: &Studio) -> ShownView {
@@ -135,7 +135,7 @@ impl ReliefPanel {
         }
     }
 
-    /// Shows all from the first position.
+    /// Shows the whole land from the initial position.
     pub fn show_whole(&mut self) {
         self.camera = Camera::default();
         self.exaggeration = None;
@@ -196,7 +196,7 @@ impl ReliefPanel {
                 self.camera.zoom(pinch * libm::expf(scroll * 0.004));
             }
         }
-        // Keys fly while the pointer is over the view and no field has the keyboard.
+        // Keys fly while the pointer is over the view and no field has the keyboard focus.
         if response.contains_pointer() && ui.ctx().memory(|memory| memory.focused().is_none()) {
             let (step, seconds) = ui.input(|input| {
                 let axis =
@@ -216,8 +216,8 @@ impl ReliefPanel {
         }
     }
 
-    /// How many times as high heights are drawn: by default a whole number with which the relief is at most a seventh
-    /// of the width, or once.
+    /// The vertical exaggeration: by default the largest whole number with which the relief is at most a seventh of the
+    /// width, or 1.
     fn times(&self, frame: Option<&Frame>) -> f64 {
         let suiting = |frame: &Frame| {
             let [low, high, _] = Self::levels(frame);
@@ -227,13 +227,13 @@ impl ReliefPanel {
         self.exaggeration.or(frame.map(suiting)).unwrap_or(1.0)
     }
 
-    /// Metres in a unit of the view.
+    /// Metres per unit of the view.
     fn unit(frame: &Frame) -> f32 {
         let window = frame.window();
         (window.width.max(window.height) as f64 * window.cell / 2.0) as f32
     }
 
-    /// The lowest and highest height, and the height in the middle of the view.
+    /// The lowest and highest height, and the height at the center of the view.
     fn levels(frame: &Frame) -> [f32; 3] {
         let finite = frame.heights.data().iter().copied().filter(|height| height.is_finite());
         let (low, high) =
@@ -241,7 +241,7 @@ impl ReliefPanel {
         if low <= high { [low, high, (low + high) / 2.0] } else { [0.0; 3] }
     }
 
-    /// The land as the light has it.
+    /// The land as input of the light.
     fn block(&self, frame: &Frame) -> Block {
         let window = frame.window();
         let [width, height] = [window.width, window.height].map(|samples| (samples.max(2) - 1) as f64 * window.cell);
@@ -277,7 +277,7 @@ impl ReliefPanel {
         }
     }
 
-    /// Where the ray through a position of the view meets the land.
+    /// The point where the ray through a position of the view meets the land.
     fn hit(&self, frame: &Frame, pointer: egui::Pos2, rect: Rect) -> Option<Vec3> {
         let at = [(pointer.x - rect.left()) / rect.width(), (pointer.y - rect.top()) / rect.height()];
         let [start, ray] = self.camera.ray(at, rect.width() / rect.height().max(1.0));
@@ -287,7 +287,7 @@ impl ReliefPanel {
             let [_, height] = frame.at(self.world(frame, place))?;
             Some(place.y <= (height - middle) * up)
         };
-        // Steps that are finer than the lattice near the camera suffice for a pointer.
+        // Steps are finer than the lattice near the camera, which is enough for a pointer.
         let (mut far, step) = (0.0, self.camera.distance / 160.0);
         for _ in 0..640 {
             let place = start + ray * far;
@@ -307,7 +307,7 @@ impl ReliefPanel {
         None
     }
 
-    /// The position of the world at a place of the view.
+    /// The world position of a point in the view.
     fn world(&self, frame: &Frame, place: Vec3) -> [f64; 2] {
         let window = frame.window();
         let unit = f64::from(Self::unit(frame));
@@ -319,7 +319,7 @@ impl ReliefPanel {
     }
 }
 
-/// The switch of contours and, if they are on, a field for their interval; 0 is one that suits the land.
+/// The switch for contours and, if they are on, a field for their interval; 0 chooses one that suits the land.
 pub fn contours(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
     let own = studio.look.contours;
     let switch = ui.selectable_label(own.is_some(), language.text("relief.contours"));
@@ -349,7 +349,7 @@ fn say(painter: &egui::Painter, rect: Rect, text: &str, ui: &Ui) {
     );
 }
 
-/// The value and the position under the pointer.
+/// The value and the position at the pointer.
 #[must_use]
 pub fn readout(frame: &Frame, world: [f64; 2], language: Language) -> String {
     let Some([value, height]) = frame.at(world) else { return String::new() };

@@ -1,9 +1,9 @@
-//! The program starts itself again: a window cannot get another graphics device.
+//! Restarting the program, because a window cannot get another graphics device.
 
 use std::path::Path;
 use std::process::Command;
 
-/// Starts the program again in place of this one. Returns only if that fails: the message says why.
+/// Replaces this program by a new instance. Returns only if that fails, with the reason.
 #[must_use]
 pub fn again(recipe: Option<&Path>) -> String {
     let lost = "the graphics device was lost. Changes that were not saved are kept, and offered at the next start";

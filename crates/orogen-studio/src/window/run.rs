@@ -33,10 +33,10 @@ struct Arguments {
     lose_device: Option<f64>,
 }
 
-/// The size of the window at first, and at least.
+/// Initial and minimum size of the window.
 const SIZES: [[f32; 2]; 2] = [[1280.0, 800.0], [480.0, 320.0]];
 
-/// A device that is lost this soon after one before is not worth another try.
+/// A device that is lost this soon after the previous one is not worth another try.
 const SOON: Duration = Duration::from_secs(30);
 
 /// Opens the window, and returns once it is closed.
@@ -47,7 +47,7 @@ pub fn run() -> ExitCode {
     let settings = Settings::read(folder.as_deref());
     let document = match arguments.recipe.as_deref().map(open).transpose() {
         Ok(document) => document,
-        // A text without a file, which is kept.
+        // A text without a file, which was stored for recovery.
         Err(_) if arguments.after_loss => None,
         Err(error) => return fail(&error.to_string()),
     };
@@ -77,8 +77,8 @@ pub fn run() -> ExitCode {
     let end = End { watch, is_after_loss: arguments.after_loss, begun: Instant::now() };
     let at_panic = end.clone();
     let print_panic = std::panic::take_hook();
-    // What draws the window panics when its device is gone, in the same frame; the text was kept before. A hook,
-    // because the release profile does not unwind.
+    // The code that draws the window panics in the same frame when its device is lost; the text was stored before. A
+    // panic hook is used, because the release profile does not unwind.
     std::panic::set_hook(Box::new(move |panic| {
         print_panic(panic);
         std::process::exit(at_panic.conclude(None));
@@ -91,7 +91,7 @@ pub fn run() -> ExitCode {
     }
 }
 
-/// What is known where the window ends.
+/// State that is needed when the window ends.
 #[derive(Clone)]
 struct End {
     watch: DeviceWatch,
@@ -101,7 +101,7 @@ struct End {
 }
 
 impl End {
-    /// Starts the studio again if its device was lost, and otherwise says why it ended; returns the exit code. `ended`
+    /// Restarts the studio if its device was lost, and otherwise reports why it ended; returns the exit code. `ended`
     /// is `None` after a panic.
     fn conclude(&self, ended: Option<Result<(), String>>) -> i32 {
         let lost = self.watch.lost();

@@ -1,4 +1,4 @@
-//! The start page: presets with pictures, and the files opened last.
+//! The start page: presets with pictures, and recent files.
 
 use eframe::egui::{self, Color32, ColorImage, RichText, Sense, TextureHandle, TextureOptions, Ui, Vec2, vec2};
 use orogen::presets;
@@ -84,7 +84,7 @@ fn card(ui: &mut Ui, name: &str, picture: Option<&TextureHandle>) -> bool {
     response.clicked()
 }
 
-/// A picture in a texture.
+/// Loads a picture into a texture.
 fn load(ui: &Ui, name: &str, bytes: &[u8]) -> Option<TextureHandle> {
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().ok()?;
     let mut data = vec![0; reader.output_buffer_size()?];

@@ -7,7 +7,7 @@ use crate::catalogue::Language;
 use crate::preview::frame::Quality;
 use crate::studio::Studio;
 
-/// Shows how far the picture is, what it took, and which graphics card computes previews, if one does.
+/// Shows the progress of the picture, the time that it took, and which graphics card computes previews, if any.
 pub fn show(ui: &mut Ui, studio: &Studio, gpu: Option<&Gpu>, language: Language) {
     ui.horizontal(|ui| {
         if studio.is_busy() {

@@ -14,18 +14,18 @@ use crate::studio::Studio;
 pub struct TextPanel {
     /// The text as it is being typed.
     text: String,
-    /// The revision that it is of.
+    /// The revision of the text.
     revision: Option<u64>,
-    /// A line that is to be shown.
+    /// A line to be shown.
     line: Option<usize>,
-    /// What can complete the word at the cursor, and the character where that word begins.
+    /// Completions for the word at the cursor, and the character where that word begins.
     completions: Vec<String>,
     word: Option<(usize, usize)>,
 }
 
 const SIZE: f32 = 12.5;
 
-/// Completions that are shown.
+/// Maximum number of completions that are shown.
 const SHOWN: usize = 12;
 
 impl TextPanel {
@@ -73,7 +73,7 @@ impl TextPanel {
                 let row = ui.fonts_mut(|fonts| fonts.row_height(&FontId::monospace(SIZE)));
                 let painter = ui.painter();
                 for n in 1..=numbers {
-                    // Lines are not wrapped, so a line is a row.
+                    // Lines are not wrapped, so each line is one row.
                     let Some(line) = output.galley.rows.get(n - 1) else { break };
                     let y = output.galley_pos.y + line.rect().top();
                     let place = egui::pos2(gutter.right() - 6.0, y);
@@ -156,8 +156,8 @@ impl TextPanel {
     }
 }
 
-/// What can complete the word before a character of the text: in quotes after `op` the ops, in other quotes nodes,
-/// otherwise the keys of the node's op.
+/// Completions for the word before a character of the text: ops in quotes after `op`, nodes in other quotes, otherwise
+/// the keys of the node's op.
 #[must_use]
 pub fn complete(text: &str, cursor: usize, studio: &Studio) -> (Vec<String>, Option<(usize, usize)>) {
     let chars: Vec<char> = text.chars().collect();
@@ -247,7 +247,7 @@ fn highlighted(text: &str, faults: &[Diagnostic], is_dark: bool, plain: Color32,
             Some((key, rest)) => {
                 append(key, plain);
                 append("=", comment);
-                // A comment after the value, unless the sign is in a text.
+                // A comment may follow the value, unless the `#` is inside a text.
                 let end = comment_start(rest);
                 let (own, note) = rest.split_at(end);
                 let is_text = own.trim_start().starts_with(['"', '\'']);
@@ -260,7 +260,7 @@ fn highlighted(text: &str, faults: &[Diagnostic], is_dark: bool, plain: Color32,
     job
 }
 
-/// Where the comment of a line begins: its length if it has none.
+/// The position where the comment of a line begins; the length of the line if it has none.
 fn comment_start(line: &str) -> usize {
     let mut quote = None;
     for (at, c) in line.char_indices() {

@@ -1,4 +1,4 @@
-//! A strip of variants: other seeds, or values of a parameter. A click takes one over.
+//! A strip of variants: other seeds, or values of a parameter. A click applies one.
 
 use eframe::egui::{
     self, Align2, Color32, ColorImage, ComboBox, FontId, Sense, TextureHandle, TextureOptions, Ui, Vec2, vec2,
@@ -18,7 +18,7 @@ use crate::studio::{Studio, surface};
 struct Variant {
     value: String,
     edit: Edit,
-    /// Its picture, once it is made; or why it cannot be.
+    /// The picture, once it is made, or the reason why it cannot be made.
     picture: Option<std::result::Result<TextureHandle, String>>,
 }
 
@@ -27,12 +27,12 @@ pub struct VariantsPanel {
     varied: Varied,
     strip: Strip,
     variants: Vec<Variant>,
-    /// What the pictures are of: the revision of the text, and what varies.
+    /// What the pictures depend on: the revision of the text, and the varied quantity.
     asked: Option<(u64, Varied)>,
 }
 
 impl VariantsPanel {
-    /// A panel of seeds.
+    /// A panel that varies the seed.
     #[must_use]
     pub fn new(wake: Wake) -> VariantsPanel {
         VariantsPanel { varied: Varied::Seed, strip: Strip::new(wake), variants: Vec::new(), asked: None }
@@ -65,7 +65,7 @@ impl VariantsPanel {
                 variant.picture = Some(picture);
             }
         }
-        // All are seen at once, if there is room.
+        // All pictures are visible at once, if there is room.
         let room = ui.available_size();
         let side = (room.y - 36.0).min(room.x / COUNT as f32 - 10.0).clamp(60.0, 220.0);
         egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
@@ -80,7 +80,7 @@ impl VariantsPanel {
         });
     }
 
-    /// Asks for pictures if the text or what varies has changed.
+    /// Requests pictures if the text or the varied quantity has changed.
     fn refresh(&mut self, studio: &Studio) -> Result<()> {
         let now = (studio.document.revision(), self.varied.clone());
         if self.asked.as_ref() == Some(&now) || !studio.document.is_valid() {
@@ -91,7 +91,7 @@ impl VariantsPanel {
         let mut recipes = Vec::new();
         for (value, edit) in self.varied.edits(&studio.document) {
             let mut variant = studio.document.clone();
-            // A value that contradicts another parameter is left out.
+            // A value that contradicts another parameter is omitted.
             if variant.apply(&edit).is_ok() {
                 recipes.push(variant.recipe().clone());
                 self.variants.push(Variant { value, edit, picture: None });
@@ -123,7 +123,7 @@ fn card(ui: &mut Ui, variant: &Variant, side: f32) -> bool {
     painter.rect_filled(image, 3.0, ui.visuals().extreme_bg_color);
     match &variant.picture {
         Some(Ok(texture)) => {
-            // Worlds that are not square keep their shape.
+            // Worlds that are not square keep their aspect ratio.
             let size = texture.size_vec2();
             let fitted = egui::Rect::from_center_size(image.center(), size * (side / size.max_elem()));
             let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));

@@ -1,4 +1,4 @@
-//! Exports against the files of the command line that the dialog shows.
+//! Compares exports with the files of the command line that the dialog shows.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,7 +19,7 @@ use orogen_studio::studio::open;
 
 use super::{press, studio, until, until_done, window};
 
-/// The words of a line as a shell reads them.
+/// The words of a line, as split by a shell.
 fn split(line: &str) -> Vec<String> {
     let (mut words, mut word, mut is_quoted, mut letters) = (Vec::new(), None, false, line.chars());
     while let Some(letter) = letters.next() {
@@ -37,14 +37,14 @@ fn split(line: &str) -> Vec<String> {
     words
 }
 
-/// Runs a command line as it is copied.
+/// Runs a command line as it is copied from the dialog.
 fn run(line: &str) {
     let mut words = split(line);
     words.extend(["--no-cache".into(), "--quiet".into()]);
     assert_eq!(format!("{:?}", orogen_cli::run_with(words)), format!("{:?}", ExitCode::SUCCESS), "{line}");
 }
 
-/// All files in a folder, with their content, and removes them.
+/// Returns all files in a folder with their content, and removes them.
 fn taken(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut all = BTreeMap::new();
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -61,12 +61,12 @@ fn taken(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     all
 }
 
-/// Chooses options.
+/// Sets options.
 fn give(given: &mut Given, options: &[(&'static str, &str)]) {
     given.extend(options.iter().map(|(name, text)| (*name, text.to_string())));
 }
 
-/// Exports, and runs the command line: both make the same files. Returns the number of files.
+/// Exports, and runs the command line: both must make the same files. Returns the number of files.
 fn same(argument: &Path, region: Region, folder: &Path, choose: impl FnOnce(&mut Export)) -> usize {
     let document = open(argument).unwrap();
     let mut export = Export::new(region, document.title(), document.is_place(), folder).unwrap();
@@ -117,7 +117,7 @@ fn the_copied_command_line_makes_the_same_files() {
         export.layer.options.insert("bits", "8".into());
     });
 
-    // Engines: all of them.
+    // All engines.
     for target in list::all() {
         let side = target.sides[0];
         let choose = |export: &mut Export| {
@@ -152,7 +152,7 @@ fn the_copied_command_line_makes_the_same_files() {
         map("svg")(export);
         let options = [
             ("color", "surfaces"),
-            // What does not apply is not on the command line.
+            // Options that do not apply are not on the command line.
             ("layer", "slope"),
             ("title", "-x 'Höhe'"),
             ("paper", "a5"),
@@ -220,7 +220,7 @@ fn the_copied_command_line_makes_the_same_files() {
     assert!(usual >= 9);
 }
 
-/// Every kind is chosen in the dialog and exported; the command line that it shows makes the same files.
+/// Every kind is selected in the dialog and exported; the command line that it shows makes the same files.
 #[test]
 fn every_kind_is_exported_from_the_dialog() {
     let folder = TestFolder::new("studio-dialog").unwrap();
@@ -252,7 +252,7 @@ fn every_kind_is_exported_from_the_dialog() {
         harness.get_by_role_and_label(Role::Button, "Export").click();
         harness.run_steps(2);
         until(&mut harness, "the export", |app| app.export_dialog().unwrap().outcome().is_some());
-        // The dialog has another height with the outcome.
+        // The dialog has another height when it shows the result.
         harness.run_steps(3);
         let dialog = harness.state().export_dialog().unwrap();
         assert!(dialog.outcome().unwrap().is_ok(), "{kind:?}: {:?}", dialog.outcome());

@@ -1,5 +1,5 @@
-//! The main views, compared with pictures of them. `UPDATE_SNAPSHOTS=1` makes the pictures anew; look at them before
-//! they are committed.
+//! Compares the main views with stored pictures. `UPDATE_SNAPSHOTS=1` writes the pictures again; check them before
+//! committing.
 
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
@@ -11,11 +11,11 @@ use orogen_studio::window::app::App;
 
 use super::{press, until, window};
 
-/// The difference of a pixel that counts, as the library measures it: drivers draw edges differently.
+/// The threshold for the difference of a pixel, in the unit of the comparison library: drivers draw edges differently.
 const DIFFERENCE: f32 = 2.0;
 
-/// The most pixels that may differ by more, of 540 000: the seconds in the bottom line do, and a few along edges of the
-/// land.
+/// Maximum number of pixels, of 540 000, that may exceed the threshold: the seconds in the bottom line do, and a few
+/// along edges of the land.
 const PIXELS: usize = 2500;
 
 fn compare(harness: &mut Harness<'_, App>, name: &str) {
@@ -50,7 +50,7 @@ fn the_main_views_look_as_they_did() {
     compare(&mut harness, "export");
 }
 
-/// A steep hill of the sea floor, 20 m below the water.
+/// A steep hill on the sea floor, 20 m below the water.
 const SHOAL: &str = r#"orogen = 1
 
 [world]
@@ -77,7 +77,8 @@ fn a_hill_of_the_sea_floor_casts_no_shadow_on_the_water() {
     std::fs::write(&file, SHOAL).unwrap();
     let mut harness = window(&folder, file.to_str(), Language::English);
     until(&mut harness, "the picture", |app| app.studio().is_some_and(Studio::is_done));
-    // The middle of the view: the water above the hill and its shadow, and no table, on which the land casts one, too.
+    // The middle of the view: the water above the hill and its shadow, but not the table, on which the land also casts
+    // a shadow.
     let middle = harness.get_by_label("relief view").rect().center();
     let mut look = |label: &str| {
         harness.get_by_label(label).click();
@@ -88,7 +89,7 @@ fn a_hill_of_the_sea_floor_casts_no_shadow_on_the_water() {
     };
     let (without, with) = (look("Shadows"), look("Shadows"));
     assert!(without == with, "with water");
-    // Without water the hill has its shadow.
+    // Without water, the hill's shadow is visible.
     let with = look("Water");
     assert!(look("Shadows") != with, "without water");
 }

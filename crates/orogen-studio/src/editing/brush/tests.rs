@@ -28,7 +28,7 @@ fn brush(effect: Effect) -> Brush {
     Brush { effect, radius: 200.0, hardness: 0.3, strength: 1.0, height: 25.0 }
 }
 
-/// Paints a stroke along a line, as the pointer does it.
+/// Paints a stroke along a line, as the pointer does.
 fn paint(document: &mut Document, brush: Brush, selected: Option<&str>, line: &[[f64; 2]]) -> String {
     let mut painting = Painting::begin(brush, document.recipe(), selected, "height", line[0]).unwrap();
     document.apply(&painting.edit()).unwrap();
@@ -53,7 +53,7 @@ fn land_is_raised_and_lowered_in_a_node_of_its_own_and_each_stroke_is_one_step()
     let node = "[nodes.paint]\nop = \"paint\"\nbackground = \"land\"\nstrokes = [\n  { points = [[500, 700], [1501, 901]], radius = 200, hardness = 0.3, value = 25 },\n]\n";
     let raised = TEXT.replace("[outputs]\nheight = \"land\"", &format!("{node}\n[outputs]\nheight = \"paint\""));
     assert_eq!(document.text(), raised);
-    // The next stroke goes there, too, whatever is selected.
+    // The next stroke goes there too, whatever is selected.
     paint(&mut document, brush(Effect::Lower), Some("hills"), &line[..1]);
     let lowered = raised.replace(
         "value = 25 },\n]",
@@ -78,7 +78,7 @@ fn a_mask_is_painted_and_erased_alone_or_as_the_mask_of_a_node() {
     assert_eq!(document.text(), TEXT.replace("[outputs]", &format!("{node}[outputs]")));
     assert_eq!(paint(&mut document, brush(Effect::Erase), Some("paint"), &dab), "paint");
     assert!(document.text().contains("hardness = 0.3, mode = \"erase\" },\n]"), "{}", document.text());
-    // Of a node that has no mask: the node then reads a new one, and later strokes go there.
+    // On a node without a mask: the node then reads a new mask, and later strokes go there.
     assert_eq!(paint(&mut document, brush(Effect::Paint), Some("land"), &dab), "paint2");
     assert!(document.text().contains("b = 300\nmask = \"paint2\"\n"), "{}", document.text());
     assert_eq!(paint(&mut document, brush(Effect::Paint), Some("land"), &dab), "paint2");
@@ -103,7 +103,7 @@ fn other_strokes_and_comments_stay_as_they_are_written() {
     let new = "{ points = [[1, 2], [300, 2]], radius = 200, hardness = 0.3, value = 25 }";
     let after = format!("strokes = [ {{ radius = 50.0, points = [[0, 0]] }} ,\n  {new},\n] # by hand\n");
     assert_eq!(document.text(), text.replace(own, &after));
-    // As tables of their own.
+    // Strokes as separate tables.
     let own = "\n[[nodes.hills.strokes]]\nradius = 50.0 # small\npoints = [[0, 0]]\n";
     let text = TEXT.replace("op = \"fbm\"\n", &format!("op = \"paint\"\n{own}"));
     let mut document = self::document(&text);
@@ -132,7 +132,7 @@ fn a_stroke_that_was_undone_while_it_was_painted_begins_again() {
     assert_eq!(document.text().matches("points").count(), 1);
     assert!(document.undo());
     assert_eq!(document.text(), TEXT);
-    // A node of that name that does not paint takes no strokes.
+    // A node with that name that is not a paint node gets no strokes.
     let edit = Edit::Stroke {
         node: "land".into(),
         placement: Placement::Alone,

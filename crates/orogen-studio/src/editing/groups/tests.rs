@@ -1,4 +1,4 @@
-//! Groups: the land stays, whatever is grouped.
+//! Groups: grouping does not change the land.
 
 use orogen::declare::Input;
 use orogen::recipe::Recipe;
@@ -81,7 +81,7 @@ fn nodes_are_grouped_and_ungrouped_where_they_stand() {
     ] {
         assert!(text.contains(part), "{part} in {text}");
     }
-    // A group around a group, another name, and away with both.
+    // A group around a group, another name, and then both dissolved.
     document.apply(&group(&["noises/hills", "noises/rough", "land"], "base")).unwrap();
     assert_eq!(names(&document), ["base/noises/hills", "base/noises/rough", "base/land", "soft"]);
     document.apply(&Edit::RenameGroup { from: "base/noises".into(), to: "base/waves".into() }).unwrap();
@@ -90,7 +90,7 @@ fn nodes_are_grouped_and_ungrouped_where_they_stand() {
     assert_eq!(names(&document), ["waves/hills", "waves/rough", "land", "soft"]);
     document.apply(&Edit::Ungroup("waves".into())).unwrap();
     assert_eq!(names(&document), ["hills", "rough", "land", "soft"]);
-    // Each was a step.
+    // Each was one step.
     (0..5).for_each(|_| assert!(document.undo()));
     assert!(document.text() == TEXT && !document.undo());
     assert!(document.redo() && document.text() == text);
@@ -172,7 +172,7 @@ fn bits(session: &Session, recipe: &Recipe) -> Vec<u32> {
     heights.data().iter().map(|height| height.to_bits()).collect()
 }
 
-/// Random selections of every preset: the content key of the heights stays, and their bits.
+/// Random selections in every preset: the content key of the heights and their bits do not change.
 #[test]
 fn the_land_of_every_preset_stays_when_nodes_are_grouped_and_ungrouped() {
     let session = Session::new(Options::default()).unwrap();

@@ -84,7 +84,7 @@ fn a_draft_comes_first_where_solvers_take_long() {
     worker.ask(Request { finest: 256, ..Request::new(preset("alpine")) });
     let frames = finish(&mut worker);
     assert_eq!(frames.iter().map(|frame| frame.quality).collect::<Vec<_>>(), [Quality::Draft, Quality::Fine]);
-    // The draft is the same land: as high, and high where the land is.
+    // The draft has the same land: the same mean height, and high areas in the same positions.
     let mean = |frame: &Frame| frame.statistics.mean;
     assert!((mean(&frames[0]) / mean(&frames[1]) - 1.0).abs() < 0.15, "{} {}", mean(&frames[0]), mean(&frames[1]));
 }

@@ -10,7 +10,7 @@ use crate::export::layer::layers;
 use crate::export::request::Export;
 use crate::studio::Studio;
 
-/// Tiles along a side.
+/// Number of tiles along a side.
 const TILES: std::ops::RangeInclusive<usize> = 1..=100;
 
 /// Shows the fields.

@@ -46,7 +46,7 @@ pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Languag
     }
 }
 
-/// The difference of the highest and the lowest height in the picture.
+/// The difference between the highest and the lowest height in the picture.
 fn relief(studio: &Studio) -> Option<f64> {
     let frame = studio.frame.as_ref()?;
     let finite = frame.heights.data().iter().copied().filter(|height| height.is_finite());

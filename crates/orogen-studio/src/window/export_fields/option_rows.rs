@@ -14,34 +14,34 @@ use super::rows::{self, WIDTH};
 use crate::catalogue::Language;
 use crate::export::given::{Given, WITHOUT_FIELD, applies};
 
-/// Columns of the parts.
+/// Number of columns of the parts.
 const COLUMNS: usize = 3;
 
-/// The word for a value that suits the data.
+/// The word for a value that is chosen from the data.
 const AUTO: &str = "auto";
 
-/// What fields show besides their declarations.
+/// What fields need in addition to their declarations.
 pub struct Fields<'a> {
     /// The language.
     pub language: Language,
     /// The layers that can be chosen.
     pub layers: Vec<String>,
-    /// The title that holds if none is given.
+    /// The default title.
     pub title: &'a str,
 }
 
-/// The fields of declared options. Those that do not apply beside the given ones have none.
+/// The fields of declared options. Options that do not apply together with the given ones have no field.
 pub struct OptionRows<'a> {
-    /// What fields show.
+    /// The context of the fields.
     pub fields: &'a Fields<'a>,
     /// The declarations.
     pub specs: &'static [OptionSpec],
-    /// What is given.
+    /// The given options.
     pub given: &'a mut Given,
 }
 
 impl OptionRows<'_> {
-    /// Shows a row for each option but the parts.
+    /// Shows a row for each option except the parts.
     pub fn rows(&mut self, ui: &mut Ui) {
         for spec in self.specs.iter().filter(|spec| !is_part(spec) && !WITHOUT_FIELD.contains(&spec.name)) {
             if applies(spec, self.specs, self.given) {
@@ -52,7 +52,7 @@ impl OptionRows<'_> {
         }
     }
 
-    /// Shows the parts that can be left out, in columns.
+    /// Shows the parts that can be switched off, in columns.
     pub fn parts(&mut self, ui: &mut Ui) {
         ui.add_space(4.0);
         ui.strong(self.fields.language.text("export.parts"));
@@ -69,7 +69,7 @@ impl OptionRows<'_> {
         });
     }
 
-    /// The name of an option: options of formats and layers are called as on the command line.
+    /// The name of an option; options of formats and layers have the same names as on the command line.
     fn label(&self, spec: &OptionSpec) -> &'static str {
         self.fields.language.find(&format!("option.{}", spec.name)).unwrap_or(spec.name)
     }
@@ -85,12 +85,12 @@ impl OptionRows<'_> {
         (name.to_owned(), text)
     }
 
-    /// The given value, otherwise the default.
+    /// The given value, or else the default.
     fn value(&self, spec: &OptionSpec) -> String {
         self.given.get(spec.name).cloned().unwrap_or_else(|| spec.default.to_owned())
     }
 
-    /// Another value; the default, or none, is not given.
+    /// Sets a value; the default or `None` removes it from the given options.
     fn set(&mut self, spec: &OptionSpec, value: Option<String>) {
         match value.filter(|value| spec.default.is_empty() || value != spec.default) {
             Some(value) => drop(self.given.insert(spec.name, value)),
@@ -138,7 +138,7 @@ impl OptionRows<'_> {
         }
     }
 
-    /// A switch; one that leaves something out is on while it does not.
+    /// A switch. An option that switches a part off is shown as checked while it is not given.
     fn switch(&mut self, ui: &mut Ui, spec: &OptionSpec, label: &str) {
         let leaves_out = leaves_out(spec);
         let mut is_on = self.given.contains_key(spec.name) != leaves_out;
@@ -150,7 +150,7 @@ impl OptionRows<'_> {
         }
     }
 
-    /// A list of values; the first item is none, unless there is a default.
+    /// A list of values; the first item stands for no value, unless there is a default.
     fn list(&mut self, ui: &mut Ui, spec: &OptionSpec, mut items: Vec<(String, String)>) {
         if spec.default.is_empty() {
             let none = self.choice(spec, AUTO).unwrap_or(self.fields.language.text("export.automatic"));
@@ -165,7 +165,7 @@ impl OptionRows<'_> {
         }
     }
 
-    /// One of the program's tilesets, or a file.
+    /// A choice between the built-in tilesets and a file.
     fn tileset(&mut self, ui: &mut Ui, spec: &OptionSpec) {
         let mut value = self.value(spec);
         let is_file = !SETS.iter().any(|set| set.name == value);
@@ -184,7 +184,7 @@ impl OptionRows<'_> {
         }
     }
 
-    /// A checkbox for whether a value is given: the example at first.
+    /// A checkbox that says whether a value is given; the initial value is the example.
     fn is_given(&mut self, ui: &mut Ui, spec: &OptionSpec, first: &str) -> bool {
         let mut is_given = self.given.contains_key(spec.name);
         let response = ui.checkbox(&mut is_given, "");
@@ -210,7 +210,7 @@ impl OptionRows<'_> {
         });
     }
 
-    /// A switch with a number that suits the data or is chosen.
+    /// A switch and a number that is either chosen from the data or given.
     fn automatic(&mut self, ui: &mut Ui, spec: &OptionSpec) {
         ui.horizontal(|ui| {
             let mut is_given = self.given.contains_key(spec.name);
@@ -233,7 +233,7 @@ impl OptionRows<'_> {
         });
     }
 
-    /// Numbers, of which the first so many are needed; with a default they are always there.
+    /// Numbers, of which the first `least` are required; with a default they are always present.
     fn numbers(&mut self, ui: &mut Ui, spec: &OptionSpec, components: &[Component], least: usize) {
         ui.horizontal(|ui| {
             if !spec.default.is_empty() || self.is_given(ui, spec, spec.example) {
@@ -280,7 +280,7 @@ impl OptionRows<'_> {
         }
     }
 
-    /// A text; one that is empty is not given.
+    /// A text field; an empty text is not given.
     fn text(&mut self, ui: &mut Ui, spec: &OptionSpec) {
         let mut text = self.value(spec);
         let hint = match (spec.name, spec.example) {
@@ -295,7 +295,7 @@ impl OptionRows<'_> {
         self.named(&field, Role::TextInput, spec);
     }
 
-    /// Tells screen readers the option of a field.
+    /// Sets the name of a field for screen readers.
     fn named(&self, response: &Response, role: Role, spec: &OptionSpec) {
         let label = self.label(spec);
         response.widget_info(|| WidgetInfo::labeled(role, true, label));
@@ -305,7 +305,7 @@ impl OptionRows<'_> {
 const POSITIVE: [f64; 2] = [1e-6, 1e15];
 const ANY: [f64; 2] = [-1e9, 1e9];
 
-/// The number of an option with one.
+/// The component of an option with a single number.
 fn number(spec: &OptionSpec, ends: [f64; 2]) -> Component {
     Component::new("", spec.affixes[1], ends)
 }
@@ -314,7 +314,7 @@ fn leaves_out(spec: &OptionSpec) -> bool {
     spec.name.starts_with("no-")
 }
 
-/// Whether an option leaves out a part, and stands with others that do.
+/// Whether an option switches off a part, and is shown with other such options.
 fn is_part(spec: &OptionSpec) -> bool {
     leaves_out(spec) && !spec.heading.is_empty()
 }

@@ -10,7 +10,7 @@ use crate::export::render::RenderExport;
 use crate::export::request::Export;
 use crate::window::relief_panel::ShownView;
 
-/// Takes over what the view in space shows.
+/// Takes over the settings of the 3D view.
 pub fn follow(own: &mut RenderExport, view: &ShownView) {
     let pair = |[a, b]: [f64; 2]| format!("{a},{b}");
     own.options.insert("camera", pair(view.camera));

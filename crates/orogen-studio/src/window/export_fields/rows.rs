@@ -1,4 +1,4 @@
-//! Rows of fields: a name, and what is chosen.
+//! Rows of fields: a name, and a choice.
 
 use eframe::egui::{ComboBox, Role, Ui, WidgetInfo};
 
@@ -7,7 +7,7 @@ use crate::catalogue::Language;
 /// Width of fields.
 pub const WIDTH: f32 = 300.0;
 
-/// Numbers of samples that are offered; 0 is the world's own.
+/// Offered numbers of samples; 0 stands for the world's own.
 const SAMPLES: [usize; 9] = [0, 256, 512, 1024, 1025, 2048, 4096, 8192, 16_384];
 
 /// A grid of rows.
@@ -15,7 +15,7 @@ pub fn grid(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
     eframe::egui::Grid::new(name).num_columns(2).spacing([12.0, 6.0]).show(ui, add);
 }
 
-/// A choice among items. Returns whether another one was chosen.
+/// A choice among items. Returns whether the selection has changed.
 pub fn choice<T: PartialEq + Clone>(ui: &mut Ui, name: &str, value: &mut T, items: &[(T, String)]) -> bool {
     ui.label(name);
     let is_changed = list(ui, name, value, items);
@@ -23,7 +23,7 @@ pub fn choice<T: PartialEq + Clone>(ui: &mut Ui, name: &str, value: &mut T, item
     is_changed
 }
 
-/// A list of items. Returns whether another one was chosen.
+/// A list of items. Returns whether the selection has changed.
 pub fn list<T: PartialEq + Clone>(ui: &mut Ui, name: &str, value: &mut T, items: &[(T, String)]) -> bool {
     let shown = items.iter().find(|(item, _)| item == value).map_or("", |(_, text)| text.as_str());
     let mut is_changed = false;
@@ -40,7 +40,7 @@ pub fn list<T: PartialEq + Clone>(ui: &mut Ui, name: &str, value: &mut T, items:
     is_changed
 }
 
-/// A choice among names that are owned. Returns whether another one was chosen.
+/// A choice among owned names. Returns whether the selection has changed.
 pub fn names(ui: &mut Ui, name: &str, value: &mut String, names: Vec<String>) -> bool {
     let items: Vec<(String, String)> = names.into_iter().map(|name| (name.clone(), name)).collect();
     choice(ui, name, value, &items)

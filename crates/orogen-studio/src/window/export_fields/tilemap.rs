@@ -8,7 +8,7 @@ use super::rows;
 use crate::catalogue::Language;
 use crate::export::request::Export;
 
-/// Cells along the longer side.
+/// Number of cells along the longer side.
 const CELLS: std::ops::RangeInclusive<usize> = 1..=65_536;
 
 /// Shows the fields.
