@@ -66,7 +66,7 @@ impl Brush {
         Brush { effect, radius: round_number(side * 0.04), hardness: 0.3, strength: 1.0, height }
     }
 
-    /// Multiplies the radius by a factor.
+    /// Multiplies the radius by a factor, within the limits of [`RADII`].
     pub fn scale(&mut self, factor: f64) {
         let radius = (self.radius * factor).clamp(RADII[0], RADII[1]);
         self.radius = format!("{radius:.2e}").parse().unwrap_or(radius);

@@ -244,7 +244,7 @@ fn add(document: &mut DocumentMut, name: &str, op: &str, inputs: &[(String, Stri
         }
     }
     if spec.named_inputs {
-        // For an expression without names, `source` is its first name.
+        // A new expression is the name `a` for the first input, or 0 without one.
         match inputs.first() {
             Some((_, source)) => {
                 own.insert("expr", toml_edit::value("a"));

@@ -102,7 +102,7 @@ impl Site {
     }
 }
 
-/// Whether a name can be used in an expression without quoting.
+/// Whether a name can be written in an expression as it is.
 fn is_word(name: &str) -> bool {
     Expression::from(name).names() == [name]
 }

@@ -101,7 +101,7 @@ pub fn rounded(value: f64) -> f64 {
     text.parse().unwrap_or(value)
 }
 
-/// A field for a value of a shape. Shapes without a field show nothing.
+/// A field for a value of a shape. Other values are only described.
 pub fn value(ui: &mut Ui, label: &str, shape: Shape, value: &Value, declared: &Number) -> Input<Value> {
     match (shape, value) {
         (Shape::Number, value) => match value.number() {

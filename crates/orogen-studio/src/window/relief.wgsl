@@ -1,11 +1,11 @@
-// The land in space: a mesh that reads its heights from a texture, with walls down to a base, and water.
+// The land in 3D: a mesh that reads its heights from a texture, with walls down to a base, and water.
 //
-// Its light is that of rendered pictures, whose text stands before this one. There, z points up and y south.
+// Its light is the light of rendered pictures, whose shader code precedes this one. There, z points up and y south.
 
 struct Scene {
     matrix: mat4x4f,
     inverse: mat4x4f,
-    // Half the width and depth in units, units of height for a metre, the height in metres that is at 0.
+    // Half the width and depth in units, units of height per metre, the height in metres at 0.
     extent: vec4f,
     // Interval of contours in metres, 0 for none; their strength; the height of the base in units; the strength of shadows.
     lines: vec4f,
@@ -37,7 +37,7 @@ fn texel(at: vec2i) -> f32 {
     return textureLoad(heights, clamp(at, vec2i(0), last), 0).x;
 }
 
-// The height in metres at a position from 0, 0 to 1, 1, whose ends are the middles of the outer samples.
+// The height in metres at a position from 0, 0 to 1, 1, whose ends are the centers of the outer samples.
 fn height(uv: vec2f) -> f32 {
     let at = uv * (vec2f(textureDimensions(heights)) - 1.0);
     let first = vec2i(floor(at));
@@ -89,39 +89,40 @@ fn encoded(linear: vec3f) -> vec4f {
     return vec4f(select(high, low, c <= vec3f(0.0031308)), 1.0);
 }
 
-// The unit vector from the camera to a place, with z up.
+// The unit vector from the camera to a position, with z up.
 fn along_to(place: vec3f) -> vec3f {
     return normalize(place - scene.eye.xyz).xzy;
 }
 
-// The color of light from a place.
+// The color of light from a position.
 fn exposed(light: vec3f, place: vec3f) -> vec4f {
     let lowest = scene.water.z;
     let left = haze_left(scene.eye.y - lowest, place.y - lowest, distance(place, scene.eye.xyz));
     return encoded(tone_map(through_air(light, along_to(place), left) * triple(EXPOSURE)));
 }
 
-// The cosine to the sun of the wall at a position.
+// The cosine of the angle between the sun and the normal of the wall at a position.
 fn wall_facing(uv: vec2f) -> f32 {
     let off = uv - 0.5;
     let normal = select(vec2f(0.0, sign(off.y)), vec2f(sign(off.x), 0.0), abs(off.x) > abs(off.y));
     return max(dot(normal, triple(SUN).xy), 0.0);
 }
 
-// The light from a wall: `metres` is the height above its foot.
+// The light from a wall at a position; it is darker at its foot.
 fn wall_light(albedo: vec3f, uv: vec2f, place: vec3f) -> vec3f {
     let base = scene.lines.z;
     let foot = 0.55 + 0.45 * clamp((place.y - base) / max(scene.water.z - base, 1e-6), 0.0, 1.0);
     return side_of(albedo, wall_facing(uv), foot);
 }
 
-// Where samples of textures are at a position.
+// The texture coordinates of a position.
 fn sample_at(uv: vec2f) -> vec2f {
     let step = 1.0 / (vec2f(textureDimensions(heights)) - 1.0);
     return uv * (1.0 - step) + 0.5 * step;
 }
 
-// The share of the sun that reaches the ground; with water, the surface of land and sea: hills of the sea floor cast no shadow on the water.
+// The share of the sun that reaches the ground or, with water, the surface of land and sea. Hills of the sea floor cast
+// no shadow on the water.
 fn sun_seen(uv: vec2f) -> f32 {
     let seen = textureSample(light, linear_sampler, sample_at(uv)).rg;
     return mix(1.0, select(seen.r, seen.g, scene.water.y > 0.0), scene.lines.w);
@@ -137,7 +138,7 @@ fn ground(in: Corner) -> @location(0) vec4f {
         let width = max(fwidth(at), 1e-6);
         let apart = abs(fract(at - 0.5) - 0.5) / width;
         let fifth = abs(fract(at / 5.0 - 0.5) - 0.5) * 5.0 / width;
-        // Lines that would run together are left out.
+        // Lines that would merge are omitted.
         let room = 1.0 - smoothstep(0.15, 0.4, width);
         let room5 = 1.0 - smoothstep(0.75, 2.0, width);
         let line = max((1.0 - smoothstep(0.5, 1.2, apart)) * room * 0.6, (1.0 - smoothstep(0.8, 1.7, fifth)) * room5);
@@ -178,16 +179,16 @@ fn water(in: Corner) -> @location(0) vec4f {
     return exposed(water_light(body, up, -along, triple(SUN), seen, reflected) + reflected * mirrored, in.place);
 }
 
-// Steps towards the sun over the land, from where its shadow is looked for.
+// Number of steps towards the sun over the land in the search for its shadow.
 const SHADOW_STEPS = 64;
 
-// The share of the sun that reaches a place of the table.
+// The share of the sun that reaches a position on the table.
 fn table_seen(place: vec3f) -> f32 {
     let rims = pair(RIMS);
     if scene.lines.w <= 0.0 || rims.y <= 0.0 {
         return 1.0;
     }
-    // The way over the land, as horizontal distances from the place.
+    // The range of the path over the land, as horizontal distances from the position.
     let towards = pair(SUNWARDS);
     let half = scene.extent.xy;
     let safe = select(towards, vec2f(1e-6), abs(towards) < vec2f(1e-6));
@@ -207,7 +208,7 @@ fn table_seen(place: vec3f) -> f32 {
     return mix(1.0, sun_above(rise, rims), scene.lines.w);
 }
 
-// What is behind the land: the sky, and the table on which the land stands.
+// The background of the land: the sky, and the table on which the land stands.
 @fragment
 fn behind(in: Blit) -> @location(0) vec4f {
     let far = scene.inverse * vec4f(2.0 * in.uv.x - 1.0, 1.0 - 2.0 * in.uv.y, 0.5, 1.0);

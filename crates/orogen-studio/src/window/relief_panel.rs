@@ -216,8 +216,8 @@ impl ReliefPanel {
         }
     }
 
-    /// The vertical exaggeration: by default the largest whole number with which the relief is at most a seventh of the
-    /// width, or 1.
+    /// The vertical exaggeration: by default the largest whole number from 1 to 10 with which the relief is at most
+    /// about a seventh of the width.
     fn times(&self, frame: Option<&Frame>) -> f64 {
         let suiting = |frame: &Frame| {
             let [low, high, _] = Self::levels(frame);
