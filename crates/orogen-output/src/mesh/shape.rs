@@ -229,7 +229,7 @@ impl Shape {
     }
 }
 
-/// A row of samples and those that are vertices.
+/// A row of the grid with its vertices.
 pub(crate) struct CornerRow<'a> {
     /// The row of the grid.
     pub row: usize,

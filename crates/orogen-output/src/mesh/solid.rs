@@ -240,7 +240,7 @@ impl Solid {
         numbers
     }
 
-    /// The surface alone.
+    /// Only the surface.
     fn top(surface: &Surface, scale: &Scale) -> Solid {
         let shape = surface.shape;
         let mut corners = Vec::with_capacity(shape.corners());

@@ -128,7 +128,7 @@ impl WallText {
         triangles
     }
 
-    /// The letters alone.
+    /// Only the letters.
     pub fn letters(&self) -> Clipped {
         clip(&self.corners, &self.triangles(), &[], EDGE)
     }

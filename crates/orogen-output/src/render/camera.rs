@@ -44,13 +44,13 @@ impl CameraSpec {
         CameraSpec { view, size, fov: 40.0 }
     }
 
-    /// The same with this angle of view along the longer side, in degrees.
+    /// Sets the angle of view along the longer side, in degrees.
     #[must_use]
     pub fn with_fov(self, fov: f64) -> CameraSpec {
         CameraSpec { fov, ..self }
     }
 
-    /// The same picture from another view.
+    /// Sets the position and direction.
     #[must_use]
     pub fn with_view(self, view: View) -> CameraSpec {
         CameraSpec { view, ..self }

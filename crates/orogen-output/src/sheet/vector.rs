@@ -237,7 +237,7 @@ mod tests {
         let ((pictures, image), (paths, path)) = (longest("<image"), longest("<path"));
         assert!(pictures == 6 && image > 900_000 && image < 1 << 20, "{pictures} of {image}");
         assert!(paths > 2 && path < (1 << 16) + 200, "{paths} of {path}");
-        // All with the same opacity, drawn as one.
+        // All paths have the same opacity and are drawn as one group.
         assert!(text.contains("<g opacity=\"0.5\">") && text.matches("stroke-opacity=\"1\"").count() == paths);
         // Tiles overlap, and the last ones end at the edge of the picture.
         assert!(text.contains("<image x=\"0.0000\" y=\"0.0000\" width=\"44.8000\" height=\"44.8000\""));

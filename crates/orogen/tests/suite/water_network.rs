@@ -198,7 +198,7 @@ fn drained_areas_are_those_of_the_layer_and_include_the_land_outside() {
         }
         assert!(found * 20 > ground.rivers.len() * 19, "{found} of {}", ground.rivers.len());
         if window.cell == 60.0 {
-            // At the finest level these layers are those of the samples.
+            // At the finest level these layers equal the layers at the samples.
             let outputs = ["flow", "receiver"].map(|layer| world.window(layer, &window).unwrap());
             // In lakes with an outlet, 16 is added to the directions of nodes.
             let mut directions = receiver;
