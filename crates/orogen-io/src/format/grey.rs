@@ -1,5 +1,5 @@
 //! Reading heights from a grayscale PNG of 8 or 16 bits, with a [`Sidecar`] that states the heights of black and white,
-//! and from a color PNG of 8 bits whose sidecar states the [`Encoding`].
+//! and from a color PNG of 8 bits whose sidecar states the encoding.
 
 use ::png::{BitDepth, ColorType};
 

@@ -28,7 +28,7 @@ pub(super) const BEDS: [Light; 6] = [
 pub(super) const SAND: Tones = [[0.31, 0.175, 0.092], [0.37, 0.240, 0.140]];
 pub(super) const SCRUB: Light = [0.125, 0.125, 0.062];
 
-/// Albedo of [`Colors::Clay`].
+/// Albedo of the coloring `Clay`.
 pub(super) const CLAY: Light = [0.30, 0.265, 0.235];
 
 /// Albedo of the soil on top of a block's side.

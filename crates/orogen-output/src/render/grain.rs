@@ -87,7 +87,7 @@ pub(super) struct GrainMap {
 }
 
 impl GrainMap {
-    /// The noise `kind` at (x * scale[0], y * scale[1]), for positions relative to `origin`.
+    /// The noise `kind` at `(x * scale[0], y * scale[1])`, for positions relative to `origin`.
     pub fn new(kind: u32, scale: [f64; 2], origin: [f64; 2]) -> GrainMap {
         let [cos, sin] = TURNS[(kind & 7) as usize];
         let matrix = [[cos * scale[0], -sin * scale[1]], [sin * scale[0], cos * scale[1]]]

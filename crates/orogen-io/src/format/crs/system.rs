@@ -58,7 +58,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// ESRI's name of the projection, and its parameters in the order of [`System::parameters`].
+    /// ESRI's name of the projection, and its parameters in the order of [`System::projection`].
     pub fn terms(self) -> (&'static str, &'static [&'static str]) {
         const CENTRE: [&str; 3] = ["False_Easting", "False_Northing", "Central_Meridian"];
         const SCALED: &[&str] = &[CENTRE[0], CENTRE[1], CENTRE[2], "Scale_Factor", "Latitude_Of_Origin"];
