@@ -28,7 +28,7 @@ def test_a_grid_of_noise_has_the_bits_of_points(name: str) -> None:
 
 
 def test_noise_has_slopes_and_fractals() -> None:
-    y, x = np.ogrid[0:20, 0:20] / np.float64(1000)
+    y, x = (axis / 1000 for axis in np.ogrid[0:20, 0:20])
     value, dx, dy = noise.perlin(x, y, gradient=True)
     step = 1e-3
     assert np.allclose((noise.perlin(x + step, y) - value) / step, dx, atol=2e-2)
@@ -137,7 +137,7 @@ def test_filled_ground_drains_and_water_is_conserved(rough: np.ndarray) -> None:
     assert area[directions == 0].sum() == 3600 * rough.size
     cut = hydrology.breach(rough)
     assert (cut <= rough + 1e-3).mean() > 0.9
-    assert hydrology.watersheds(rough).min() >= 1
+    assert hydrology.watersheds(rough)[1:-1, 1:-1].min() >= 1
     double = hydrology.accumulate(rough, cell=60, rain=np.full(rough.shape, 2.0))
     assert np.allclose(double, 2 * area)
     with pytest.raises(orogen.errors.RequestError, match="shape"):

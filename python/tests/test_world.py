@@ -97,10 +97,10 @@ def test_parameters_and_seeds_change_the_world() -> None:
         [world]
         cell = 10
         [parameters]
-        high = { value = 100, range = [0, 500], unit = "m" }
+        high = { default = 100, range = [0, 500], unit = "m" }
         [nodes.a]
         op = "constant"
-        value = "high"
+        value = "= high"
         [outputs]
         height = "a"
     """
@@ -183,7 +183,7 @@ def test_mistakes_are_sentences(hills: orogen.World, tmp_path: Path) -> None:
 
 
 def test_memory_is_limited() -> None:
-    world = orogen.World("hills", memory="64MiB", cache=False)
+    world = orogen.World({**RECIPE, "world": {"cell": 20}}, memory="64MiB", cache=False)
     with pytest.raises(orogen.errors.MemoryLimitError, match="MiB"):
         world.window(window=(0, 0, 20_000, 20_000))
     with pytest.raises(orogen.errors.RequestError, match="512MiB"):

@@ -29,7 +29,9 @@ def arrays() -> npt.NDArray[np.float32]:
     land = 100 * noise.perlin(x, y, wavelength=32, octaves=5)
     value, dx, dy = noise.simplex(x, y, gradient=True)
     eroded = erosion.thermal(land, cell=10.0)
-    water = hydrology.lakes(eroded, cell=10.0, area=500)
+    water: hydrology.Lakes = hydrology.lakes(eroded, cell=10.0, area=500)
     lines = analysis.contours(water.surface, cell=10.0, interval=20)
     labels: npt.NDArray[np.uint32] = water.labels
-    return analysis.slope(eroded, cell=10.0) + lines[0].points.astype(np.float32)[0, 0] + labels + value + dx + dy
+    area: npt.NDArray[np.float32] = hydrology.accumulate(eroded, cell=10.0)
+    assert labels.shape == (64, 64) and lines[0].points.shape[1] == 2
+    return np.stack([analysis.slope(eroded, cell=10.0), area, value, dx, dy])

@@ -35,9 +35,9 @@ enum Command {
     Build(build::Args),
     /// Measure a terrain: a table with reference values of real land, and a page of charts
     Analyze(analyze::Args),
-    /// Find a recipe whose terrain is statistically similar to a real place
+    /// Find a recipe whose terrain has statistics similar to those of a real place
     Fit(fit::Args),
-    /// Refine a file of heights to a smaller cell: its rivers stay, and valleys and slopes grow between them
+    /// Refine a file of heights to a smaller cell: its rivers are kept, and valleys and slopes are added between them
     Refine(refine::Args),
     /// Draw the growth of a terrain: frames of uplift and erosion as an animation
     Grow(grow::Args),

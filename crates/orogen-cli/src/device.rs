@@ -13,8 +13,8 @@ use crate::say;
 #[derive(Debug, Clone, clap::Args)]
 pub struct DeviceOption {
     /// Where the terrain is computed: cpu, gpu (the first graphics card; gpu:NAME or gpu:NUMBER for another one of
-    /// `orogen devices`), or auto (a graphics card if there is one). A graphics card makes a preview: close to the
-    /// processor's terrain, but not the same bits
+    /// `orogen devices`), or auto (a graphics card if there is one). A graphics card computes a preview: close to the
+    /// processor's terrain, but not bit for bit the same
     #[arg(long, value_name = "DEVICE", default_value = "cpu")]
     device: DeviceChoice,
 }

@@ -28,7 +28,7 @@ pub struct Limits {
     /// else the system's cache folder]
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
-    /// Size limit of the cache; what was not used for longest is removed first [default: 10GiB]
+    /// Size limit of the cache; the least recently used entries are removed first [default: 10GiB]
     #[arg(long, value_name = "BYTES")]
     pub cache_limit: Option<Bytes>,
     /// Do not read or write the cache

@@ -23,8 +23,8 @@ use crate::values::seeds::Seeds;
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "World and window")]
 pub struct View {
-    /// Seed of the world, instead of the recipe's. Several seeds, such as 1,2,3 or 1..9, make one output each, named by
-    /// its seed (NAME-7.png, or at {seed} in the name)
+    /// Seed of the world, instead of the recipe's. Several seeds, such as 1,2,3 or 1..9, make one output each, with the
+    /// seed in its name (NAME-7.png, or in place of {seed})
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub seed: Option<Seeds>,
     #[command(flatten)]

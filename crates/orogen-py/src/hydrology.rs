@@ -140,9 +140,8 @@ pub fn accumulate<'py>(
     if rain.as_ref().is_some_and(|rain| rain.window() != heights.window()) {
         return Err(refused(py, "`rain` must have the shape of the heights"));
     }
-    let made = run(py, progress, |progress| {
-        Ok(drained(&heights, sea_level, rain.as_ref(), progress)?.accumulation.areas())
-    })?;
+    let made =
+        run(py, progress, |progress| Ok(drained(&heights, sea_level, rain.as_ref(), progress)?.accumulation.areas()))?;
     array(py, made)
 }
 

@@ -17,8 +17,8 @@ use orogen::options::Options;
 use orogen::output::map::Painter;
 use orogen::recipe::RecipeSource;
 use orogen::recipe::presets as library;
-use orogen::world::HEIGHT;
 use orogen::view::{Bounds, Rectangle, Size, View};
+use orogen::world::HEIGHT;
 use orogen::{
     Budget, Error, ErrorKind, FolderStore, Grid, Progress, Recipe, Result, Sampler, Session, SolutionStore, Window,
 };

@@ -13,9 +13,17 @@ def _layer(
     heights: Samples, layer: str, cell: float, nodata: float | None, progress: Progress, options: Mapping[str, Any]
 ) -> F32:
     """A derived layer of the world that consists of these heights."""
+    import warnings
+
+    import numpy as np
+
     from orogen._world import World
 
     data = _heights(heights, nodata)
-    world = World(data, cell=cell, cache=False)
+    with warnings.catch_warnings():
+        # Neighbors of missing samples see interpolated heights.
+        warnings.simplefilter("ignore")
+        world = World(data, cell=cell, cache=False)
     made: F32 = world.window(layer, window=(0, 0, data.shape[1], data.shape[0]), progress=progress, **options)
+    made[..., np.isnan(data)] = np.nan
     return made

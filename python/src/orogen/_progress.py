@@ -17,7 +17,7 @@ def listener(progress: Progress) -> Iterator[Callable[[float], object] | None]:
         yield None
     elif progress is True:
         # Only who asks for a bar needs it.
-        from tqdm.auto import tqdm
+        from tqdm.auto import tqdm  # type: ignore[import-untyped,unused-ignore]
 
         with tqdm(total=100, unit="%", bar_format="{l_bar}{bar}| {elapsed}<{remaining}") as bar:
 

@@ -61,12 +61,12 @@ class Window(NamedTuple):
     @property
     def east(self) -> F64:
         """Metres east of the origin, of each column."""
-        return np.arange(self.x, self.x + self.width) * self.cell
+        return np.arange(self.x, self.x + self.width, dtype=np.float64) * self.cell
 
     @property
     def south(self) -> F64:
         """Metres south of the origin, of each row."""
-        return np.arange(self.y, self.y + self.height) * self.cell
+        return np.arange(self.y, self.y + self.height, dtype=np.float64) * self.cell
 
 
 class Parameter(NamedTuple):
@@ -113,7 +113,7 @@ class Sampler:
 
     def window(self, window: Window) -> F32:
         """Samples of a window, of shape (height, width)."""
-        return self._points.window(tuple(window))
+        return self._points.window(window)
 
 
 class World:
@@ -314,7 +314,7 @@ class World:
     @overload
     def window(
         self,
-        layer: Sequence[str],
+        layer: list[str] | tuple[str, ...],
         *,
         size: Size | None = None,
         window: Part | None = None,
@@ -325,7 +325,7 @@ class World:
 
     def window(
         self,
-        layer: str | Sequence[str] = "height",
+        layer: str | list[str] | tuple[str, ...] = "height",
         *,
         size: Size | None = None,
         window: Part | None = None,
@@ -355,7 +355,7 @@ class World:
         MemoryLimitError
             If the samples need more memory than `memory`.
         """
-        part = tuple(self.view(size=size, window=window, bounds=bounds, cell=cell))
+        part = self.view(size=size, window=window, bounds=bounds, cell=cell)
         names = [layer] if isinstance(layer, str) else list(layer)
         with listener(progress) as heard:
             made = self._native.read(names, part, options, heard)
@@ -412,7 +412,7 @@ class World:
         progress: Progress = None,
     ) -> Objects:
         """The objects that the recipe scatters over a window, such as trees and rocks."""
-        part = tuple(self.view(size=size, window=window, bounds=bounds, cell=cell))
+        part = self.view(size=size, window=window, bounds=bounds, cell=cell)
         with listener(progress) as heard:
             names, kinds, columns = self._native.objects(part, heard)
         return Objects(names, kinds, *columns)
@@ -463,7 +463,6 @@ class World:
         self,
         path: PathLike,
         *,
-        size: Size | None = None,
         window: Part | None = None,
         bounds: Bounds | None = None,
         cell: float | None = None,
@@ -471,8 +470,11 @@ class World:
         progress: Progress = None,
         **options: Unpack[MapOptions],
     ) -> Path:
-        """Draws a map sheet as .png, .svg or .pdf (`orogen map`). Returns the path; see `export` for existing files."""
-        return self._write("map", path, _choice(size, window, bounds, cell), overwrite, progress, dict(options))
+        """Draws a map sheet as .png, .svg or .pdf (`orogen map`). Returns the path.
+
+        `size` is the size of the sheet, as on the command line; `cell` chooses the samples. See `export` for existing files.
+        """
+        return self._write("map", path, _choice(None, window, bounds, cell), overwrite, progress, dict(options))
 
     def render(
         self,
@@ -570,7 +572,7 @@ class World:
     ) -> bytes:
         """A shaded relief in hypsometric colors as the bytes of a .png, as notebooks show it."""
         size = None if cell is not None or isinstance(window, (Window, tuple)) else size
-        part = tuple(self.view(size=size, window=window, bounds=bounds, cell=cell))
+        part = self.view(size=size, window=window, bounds=bounds, cell=cell)
         return self._native.picture(part)
 
     def plot(self, layer: str = "height", ax: Any = None, *, size: Size | None = 512, **view: Any) -> Any:
@@ -609,7 +611,8 @@ def _choice(size: Size | None, window: Part | None, bounds: Bounds | None, cell:
     if isinstance(window, Window):
         if size is not None or cell not in (None, window.cell):
             raise RequestError("a `Window` counts samples of its own cell; leave out `size` and `cell`")
-        window, cell = tuple(window[:4]), window.cell
+        cell = window.cell
+        window = (window.x, window.y, window.width, window.height)
     sides = None if size is None else [size] if isinstance(size, (int, np.integer)) else list(size)
     return (window, bounds, sides, cell)
 

@@ -28,16 +28,16 @@ def dataset(world: World, layers: Sequence[str], window: Window, arrays: dict[st
     }
     mapping: dict[str, Any] = {}
     if world.epsg is not None:
-        attributes = {"crs_wkt": world._native.wkt, "GeoTransform": _transform(x, y, window, per_east, per_north)}
+        attributes: dict[str, Any] = {"crs_wkt": world._native.wkt, "GeoTransform": _transform(x, y, window, per_east, per_north)}
         coordinates["spatial_ref"] = ((), 0, attributes)
         mapping = {"grid_mapping": "spatial_ref"}
     variables: dict[str, Any] = {}
     for layer in layers:
         unit = world.layers.get(layer, "")
-        attributes = {"long_name": layer, "cell": window.cell} | ({"units": unit} if unit else {}) | mapping
+        about_layer: dict[str, Any] = {"long_name": layer, "cell": window.cell} | ({"units": unit} if unit else {}) | mapping
         array = arrays[layer]
         dims = ("y", "x") if array.ndim == 2 else ("channel", "y", "x")
-        variables[layer] = xr.Variable(dims, array, attributes)
+        variables[layer] = xr.Variable(dims, array, about_layer)
     about = {"title": world.name, "comment": world.about, "source": "Orogen", "seed": world.seed}
     return xr.Dataset(variables, coordinates, about)
 
@@ -45,7 +45,8 @@ def dataset(world: World, layers: Sequence[str], window: Window, arrays: dict[st
 def _transform(x: F64, y: F64, window: Window, per_east: float, per_north: float) -> str:
     """The transform of GDAL: from the corner of the first pixel."""
     step_x, step_y = window.cell * per_east, -window.cell * per_north
-    return f"{x[0] - step_x / 2!r} {step_x!r} 0 {y[0] - step_y / 2!r} 0 {step_y!r}"
+    left, top = float(x[0] - step_x / 2), float(y[0] - step_y / 2)
+    return f"{left!r} {step_x!r} 0 {top!r} 0 {step_y!r}"
 
 
 class LayerArray(BackendArray):
@@ -100,7 +101,7 @@ class OrogenBackend(BackendEntrypoint):
     description = "Worlds of Orogen: presets, recipes (.toml) and their layers, lazily"
     open_dataset_parameters = ("filename_or_obj", "drop_variables")
 
-    def open_dataset(  # type: ignore[override]
+    def open_dataset(
         self,
         filename_or_obj: Any,
         *,
@@ -129,6 +130,6 @@ class OrogenBackend(BackendEntrypoint):
     def guess_can_open(self, filename_or_obj: Any) -> bool:
         """Recipes alone: other readers open files of heights."""
         try:
-            return os.fspath(filename_or_obj).endswith(".toml")
+            return str(os.fspath(filename_or_obj)).endswith(".toml")
         except TypeError:
             return False

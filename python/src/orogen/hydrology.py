@@ -123,7 +123,7 @@ def accumulate(
 def watersheds(
     heights: Samples, *, nodata: float | None = None, sea_level: float | None = None, progress: Progress = None
 ) -> npt.NDArray[np.uint32]:
-    """The watershed of each cell: the number of its outlet, from 1; 0 outside the land."""
+    """The watershed of each cell: the number of its outlet, from 1; 0 for outlets to which no other cell drains."""
     data = _heights(heights, nodata)
     with listener(progress) as heard:
         return _orogen.watersheds(data, sea_level, heard)

@@ -127,7 +127,9 @@ def _noise(basis: str, about: str) -> Noise:
             shapes = ", ".join(f"{names[k]} {axis.shape}" for k, axis in enumerate(given))
             raise RequestError(f"the positions do not broadcast against each other: {shapes}") from None
         is_lattice = _is_lattice(given[0].shape, given[1].shape, shape)
-        first = [axis.ravel() if is_lattice else _flat(axis, shape) for axis in given[:2]]
+        first, second = (
+            np.ascontiguousarray(axis).ravel() if is_lattice else _flat(axis, shape) for axis in given[:2]
+        )
         depths: list[F64 | None] = [None, None]
         for k, axis in enumerate(given[2:]):
             depths[k] = axis.ravel() if axis.size == 1 else _flat(axis, shape)
@@ -140,7 +142,7 @@ def _noise(basis: str, about: str) -> Noise:
             "fractal": fractal,
             **options,
         }
-        made = _orogen.noise(basis, *map(np.ascontiguousarray, first), *depths, is_lattice, gradient, keys)
+        made = _orogen.noise(basis, first, second, depths[0], depths[1], is_lattice, gradient, keys)
         arrays = tuple(values.reshape(shape) for values in made)
         return arrays if gradient else arrays[0]
 

@@ -46,10 +46,10 @@ struct Clear {
     /// The cache folder [default: $OROGEN_CACHE, else the system's cache folder]
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
-    /// Remove only what was not used for this time, such as 30d, 12h or 90m
+    /// Remove only entries that were not used for this time, such as 30d, 12h or 90m
     #[arg(long, value_name = "AGE")]
     older_than: Option<Age>,
-    /// Keep this many bytes of what was used most recently
+    /// Keep this many bytes of the most recently used entries
     #[arg(long, value_name = "BYTES")]
     keep: Option<Bytes>,
     /// Print no summary

@@ -17,7 +17,7 @@ pub struct Args {
     /// A recipe file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...) [default: a page of
     /// presets]
     recipe: Option<PathBuf>,
-    /// Where previews are computed: cpu, gpu, gpu:NAME or auto; exports are always the processor's
+    /// Where previews are computed: cpu, gpu, gpu:NAME or auto; exports are always computed by the processor
     #[arg(long, value_name = "DEVICE", default_value_t)]
     device: DeviceChoice,
 }

@@ -104,7 +104,10 @@ impl Writer {
         let rows = samples / width;
         let whole = channels.len() == self.order.len() && channels.iter().all(|channel| channel.len() == rows * width);
         if !whole || self.rows + rows > self.picture.height {
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, "these are not rows of the picture"));
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidInput,
+                "the samples are not complete rows of the picture",
+            ));
         }
         for first in (0..rows).step_by(PIECE) {
             let last = (first + PIECE).min(rows);

@@ -177,9 +177,10 @@ fn write_frames(
     let [width, height] = size;
     let side = |side: usize| match u16::try_from(side) {
         Ok(n) if n > 0 => Ok(n.to_le_bytes()),
-        _ => {
-            Err(io::Error::new(io::ErrorKind::InvalidInput, format!("a GIF has 1 to 65535 pixels a side, not {side}")))
-        }
+        _ => Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            format!("a GIF must have 1 to 65535 pixels per side, not {side}"),
+        )),
     };
     let (wide, high) = (side(width)?, side(height)?);
     if animation.frames == 0 {

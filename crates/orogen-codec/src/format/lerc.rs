@@ -104,7 +104,7 @@ struct Head {
 impl Head {
     fn read(input: &mut Input, packed: &[u8]) -> Result<Head, String> {
         if input.take(6)? != b"Lerc2 " {
-            return Err("a block is compressed with a LERC other than Lerc2, which is not supported".into());
+            return Err("a block is compressed with a version of LERC other than Lerc2, which is not supported".into());
         }
         let version = input.int()?;
         if !(3..=6).contains(&version) {

@@ -95,11 +95,13 @@ impl Layout {
     #[must_use]
     pub const fn about(self) -> &'static str {
         match self {
-            Layout::Blob => "47 tiles a class: by the sides of a cell, and its corners between two sides",
-            Layout::Edge => "16 tiles a class: by the sides of a cell",
-            Layout::Corner => "15 tiles a class: by the classes at the corners of a tile",
-            Layout::Dual => "15 tiles a class: shifted by half a tile, so that each cell is where four tiles meet",
-            Layout::Rule => "tiles chosen by rules for the eight cells around",
+            Layout::Blob => "47 tiles per class, for the sides of a cell and the corners between two covered sides",
+            Layout::Edge => "16 tiles per class, for the sides of a cell",
+            Layout::Corner => "15 tiles per class, for the classes at the corners of a tile",
+            Layout::Dual => {
+                "15 tiles per class, shifted by half a tile, so that four tiles meet in the middle of each cell"
+            }
+            Layout::Rule => "tiles chosen by rules for the eight neighboring cells",
         }
     }
 

@@ -147,7 +147,8 @@ fn go(heights: &Grid, step: &Step, [mut i, mut j]: [usize; 2], mut at: [f32; 2],
         let rise = around.gradient(at);
         let turned = [0, 1].map(|k| step.inertia * way[k] - (1.0 - step.inertia) * rise[k] * step.per_cell);
         let length = (turned[0] * turned[0] + turned[1] * turned[1]).sqrt();
-        if length < 1e-9 {
+        // Level ground, or a corner without a height.
+        if !(1e-9..f32::INFINITY).contains(&length) {
             break;
         }
         let scale = 1.0 / length;
@@ -164,6 +165,9 @@ fn go(heights: &Grid, step: &Step, [mut i, mut j]: [usize; 2], mut at: [f32; 2],
         let next = [moved[0] - whole[0] as f32, moved[1] - whole[1] as f32];
         let ahead = corners(east, south);
         let there = ahead.height(next);
+        if !there.is_finite() {
+            break;
+        }
         let drop = here - there;
         let slope = drop * step.per_cell;
         let could = slope.max(step.least_slope) * speed * water * step.capacity;

@@ -282,6 +282,21 @@ mod tests {
     }
 
     #[test]
+    fn droplets_end_where_heights_are_missing() {
+        let window = Window::new(60, 50, 10.0);
+        let whole = ground(window);
+        let mut holed = whole.clone();
+        holed.row_mut(20)[25..31].fill(f32::NAN);
+        holed.row_mut(30)[10] = f32::INFINITY;
+        let settled = droplets().run(&holed.padded(droplets().halo(10.0)), &Progress::none()).unwrap();
+        for (made, given) in settled.data().iter().zip(holed.data()) {
+            assert_eq!(made.is_finite(), given.is_finite(), "{made} of {given}");
+            assert!(!given.is_finite() || (made - given).abs() < 200.0, "{made} of {given}");
+        }
+        assert_ne!(settled.row(5), whole.row(5));
+    }
+
+    #[test]
     fn a_window_is_the_middle_of_a_larger_one_on_any_number_of_threads() {
         let droplets = droplets();
         let window = Window::new(90, 140, 10.0).at(-31, 17);

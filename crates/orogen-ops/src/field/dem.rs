@@ -12,7 +12,7 @@ use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
 
 choice! {
-    /// What the field shows of a file of heights.
+    /// The values of a file of heights that the field has.
     pub enum DemShows {
         /// The heights, in metres.
         Height = "height",

@@ -17,7 +17,7 @@ op! {
     /// a `file`. `points = [[x, y], ...]` is one ring, `points = [[[x, y], ...], [[x, y], ...]]` are several; a third
     /// number of each point is the height of the boundary there. The last point is joined to the first. What is inside
     /// follows from the even-odd rule over all rings: a ring within a ring is a hole, a third one an island in it.
-    /// Areas that overlap leave out what they share.
+    /// Where two areas overlap, their common part is outside.
     ///
     /// Files: SVG (.svg) and GeoJSON (.geojson, .json), as for `path`. Of SVG the elements `path`, `polygon`, `rect`,
     /// `circle` and `ellipse` are read, whatever their fill; of GeoJSON `Polygon` and `MultiPolygon`. For rings that

@@ -5,10 +5,10 @@ use crate::op::Field;
 op! {
     /// The source, computed at a fixed cell and interpolated, whatever cell is requested.
     ///
-    /// A filter is computed at the requested cell, so it makes other land at every cell. Behind `resample` it makes the
-    /// same land at all of them: finer samples are interpolated as the source's layer is (heights by a cubic), and
-    /// coarser ones are samples of the fixed cell, bit for bit where the two lattices coincide. `bake` does the same
-    /// for a whole bounded world; this op computes only what a window needs, also in unbounded worlds. A request with a
+    /// A filter is computed at the requested cell, so its result differs from cell to cell. After `resample` it is the
+    /// same at all cells: finer samples are interpolated as the source's layer is (heights by a cubic), and coarser
+    /// ones are samples of the fixed cell, bit for bit where the two lattices coincide. `bake` does the same for a
+    /// whole bounded world; this op computes only what a window needs, also in unbounded worlds. A request with a
     /// larger cell computes (requested cell / cell)^2 samples of the source for each of its own, until `max_ratio` is
     /// reached. Detail finer than the cell is lost.
     pub struct Resample = "resample", field, revision 1;

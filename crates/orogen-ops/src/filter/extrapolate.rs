@@ -10,9 +10,9 @@ use std::ops::Range;
 op! {
     /// Linear extrapolation beyond the edges of a bounded world; inside the world the source itself.
     ///
-    /// Filters at the edge of the world read beyond it: without this op the source as it continues there, with it only
-    /// the ground inside the world. Samples that are farther out than `samples` are missing (NaN). In an unbounded
-    /// world nothing changes.
+    /// Filters at the edge of the world read beyond it: without this op the source's own values there, with it only the
+    /// ground inside the world. Samples that are farther out than `samples` are missing (NaN). In an unbounded world
+    /// nothing changes.
     pub struct Extrapolate = "extrapolate", filter, revision 1;
     inputs {
         /// The values inside the world.

@@ -11,7 +11,7 @@ drained_op! {
     /// over the whole world at a cell of about a kilometre, which takes a moment. Each finer level has half the cell.
     /// Rivers are led through it, branches grow up from them, and slopes follow the steady state of the stream power
     /// law, S = (U/K) A^-m, limited on hillslopes. A window of a level depends on the coarser level around it only, so
-    /// any window is made by itself, and a larger cell shows the same land coarsely. Where the coarse land has no
+    /// any window is made independently, and a larger cell shows the same land coarsely. Where the coarse land has no
     /// receiver, in depressions and beyond its border, there is standing water. Ground below sea level is refined like
     /// land, unless `sea` is set.
     ///
@@ -34,8 +34,8 @@ drained_op! {
         creep_factor: optional,
         /// Factor of the width of valley floors. Default: 1.
         floor_factor: optional,
-        /// Factor of the rain: `flow` and the slopes of rivers follow the discharge, which is that of a larger drainage
-        /// area where more rain falls. The `flow` of the source should contain it. Default: 1.
+        /// Factor of the rain: `flow` and the slopes of rivers follow the discharge, which grows with the rain. The
+        /// `flow` of the source should contain it. Default: 1.
         rain: optional,
     }
     params {
@@ -66,12 +66,12 @@ drained_op! {
         /// them, rough rock where they are steep, and beds and banks of rivers that are wider than a sample. Finer
         /// samples are interpolated.
         details: u32 = 0, range 0 to 10;
-        /// How frequent lakes with an outlet are along rivers, from none to many. Their regions are about 100 km wide;
-        /// there are few in plains. They begin at cells of 5 km to 400 m: levels that begin with a smaller cell have
-        /// none.
+        /// Frequency of lakes with an outlet along rivers, from none (0) to many (1). Their regions are about 100 km
+        /// wide; there are few in plains. They begin at cells of 5 km to 400 m: levels that begin with a smaller cell
+        /// have none.
         lakes: f64 = 0.0, range 0.0 to 1.0;
         /// Whether there is a sea where the source is at or below the world's sea level. It is as deep as the source,
-        /// up to 4944 m, and rivers end at its shore.
+        /// up to 4944 m, and rivers end at the shore of this sea.
         sea: bool = false;
     }
 }

@@ -11,16 +11,16 @@ drained_op! {
     /// The land is made level by level. The coarsest level places sea, uplift and the courses of the largest rivers by
     /// noise. Each finer level has half the cell: rivers keep their course, area and fall, and new branches grow
     /// between them, with slopes by the steady state of the stream power law, S = (U/K) A^-m, limited on hillslopes. A
-    /// window of a level depends on the coarser level around it only, so any window is made by itself, a river of 4000
-    /// km runs through tiles that know nothing of each other, and a larger cell shows the same land coarsely. Sea level
-    /// is at 0.
+    /// window of a level depends on the coarser level around it only, so any window is made independently, a river of
+    /// 4000 km runs through tiles that are made independently, and a larger cell shows the same land coarsely. Sea
+    /// level is at 0.
     ///
     /// Related: hydrology-based terrain (Génevaux and others 2013), Dendry (Gaillard and others 2019), multi-scale
     /// terrain amplification (Schott and others 2024).
     pub struct Continents = "continents", levelled, revision 3;
     inputs {
         /// Distance to the shore in metres, positive on land, in place of the op's own continents. Lakes and rivers
-        /// keep what they need; rivers end in its sea or, where a coarse level saw a sea that is not there, in a lake.
+        /// keep their own water; rivers end in its sea or, where a coarse level saw a sea that is not there, in a lake.
         /// Where it is NaN, the op's own is used.
         shore: optional,
         /// Uplift over erodibility in place of the op's own ranges and plains: about 1.5 in high mountains, 0.5 in
@@ -32,8 +32,8 @@ drained_op! {
         creep_factor: optional,
         /// Factor of the width of valley floors. Default: 1.
         floor_factor: optional,
-        /// Factor of the rain: `flow` and the slopes of rivers follow the discharge, which is that of a larger drainage
-        /// area where more rain falls. Default: 1.
+        /// Factor of the rain: `flow` and the slopes of rivers follow the discharge, which grows with the rain.
+        /// Default: 1.
         rain: optional,
     }
     params {
@@ -67,9 +67,9 @@ drained_op! {
         /// finest valleys, with gullies on them, rough rock where they are steep, and beds and banks of rivers that are
         /// wider than a sample. Finer samples are interpolated.
         details: u32 = 0, range 0 to 10;
-        /// How frequent lakes with an outlet are along rivers, from none to many. Their regions are about 100 km wide;
-        /// there are few in plains. They begin at cells of 5 km to 400 m: levels that begin with a smaller cell have
-        /// none.
+        /// Frequency of lakes with an outlet along rivers, from none (0) to many (1). Their regions are about 100 km
+        /// wide; there are few in plains. They begin at cells of 5 km to 400 m: levels that begin with a smaller cell
+        /// have none.
         lakes: f64 = 0.0, range 0.0 to 1.0;
     }
     layers {

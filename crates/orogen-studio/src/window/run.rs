@@ -16,13 +16,13 @@ use crate::files;
 use crate::settings::Settings;
 use crate::studio::open;
 
-/// Design terrain by looking at it.
+/// Design terrain interactively.
 #[derive(Debug, Parser)]
 #[command(name = "orogen-studio", version)]
 struct Arguments {
     /// A recipe file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...) [default: the start page]
     recipe: Option<PathBuf>,
-    /// Where previews are computed: cpu, gpu, gpu:NAME or auto; exports are always the processor's
+    /// Where previews are computed: cpu, gpu, gpu:NAME or auto; exports are always computed by the processor
     #[arg(long, value_name = "DEVICE", default_value_t)]
     device: DeviceChoice,
     /// The program was started again because the graphics device of the run before was lost

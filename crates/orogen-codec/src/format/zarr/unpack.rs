@@ -100,7 +100,7 @@ fn blosc(frame: &[u8], most: usize) -> Result<Vec<u8>, String> {
         return Ok(frame.get(16..16 + length).ok_or_else(damaged)?.to_vec());
     }
     if flags & 4 != 0 {
-        return Err("a chunk is compressed with Blosc with its bits shuffled, which is not supported".into());
+        return Err("a chunk is compressed with Blosc and bit shuffle, which is not supported".into());
     }
     let unpack = |packed: &[u8], due: usize| match flags >> 5 {
         1 => lz4(packed, due),

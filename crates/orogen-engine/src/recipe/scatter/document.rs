@@ -27,9 +27,9 @@ table! {
     density: Input = Input::Value(1.0), range [0.0, 1.0];
     /// Scale factor: one number, or [smallest, largest]. Default: 1.
     size: [f64; 2] = [1.0; 2], range SIZES, pair "[SMALLEST, LARGEST]", single true, ascending true;
-    /// Turn about the vertical axis: `random`, or degrees clockwise seen from above.
+    /// Rotation about the vertical axis: `random`, or degrees clockwise seen from above.
     turn: Turn = Turn::Random;
-    /// Whether objects stand in the sea and in the lakes of the output `lakes`.
+    /// Whether objects are placed in the sea and in the lakes of the output `lakes`.
     water: InWater = InWater::Avoid;
     /// Smallest distance to the objects of the entries before this one. Unit: m. Default: `spacing`.
     clearance: f64 = 10.0, range [0.0, 1e6];
