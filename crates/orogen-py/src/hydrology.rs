@@ -20,6 +20,7 @@ use crate::failure::refused;
 use crate::run::run;
 
 type Listener<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+type Array<'py, T> = Bound<'py, PyArray2<T>>;
 
 /// The drainage of heights.
 struct Drained {
@@ -62,7 +63,7 @@ pub fn fill<'py>(
     heights: Heights<'py>,
     sea_level: Option<f32>,
     progress: Listener<'_, 'py>,
-) -> PyResult<Bound<'py, PyArray2<f32>>> {
+) -> PyResult<Array<'py, f32>> {
     let heights = grid(&heights, 1.0)?;
     let made = run(py, progress, |progress| {
         let (_, drainage) = route(&heights, sea_level, None, progress)?;
@@ -82,7 +83,7 @@ pub fn breach<'py>(
     max_length: u32,
     sea_level: Option<f32>,
     progress: Listener<'_, 'py>,
-) -> PyResult<Bound<'py, PyArray2<f32>>> {
+) -> PyResult<Array<'py, f32>> {
     if max_depth.is_nan() || max_depth < 0.0 {
         return Err(refused(py, &format!("`max_depth` must be at least 0 m, not {max_depth}")));
     }
@@ -104,7 +105,7 @@ pub fn flow_direction<'py>(
     random: Option<u32>,
     sea_level: Option<f32>,
     progress: Listener<'_, 'py>,
-) -> PyResult<Bound<'py, PyArray2<u8>>> {
+) -> PyResult<Array<'py, u8>> {
     let known = [
         ("esri", Convention::ESRI),
         ("grass", Convention::GRASS),
@@ -134,7 +135,7 @@ pub fn accumulate<'py>(
     rain: Option<Heights<'py>>,
     sea_level: Option<f32>,
     progress: Listener<'_, 'py>,
-) -> PyResult<Bound<'py, PyArray2<f32>>> {
+) -> PyResult<Array<'py, f32>> {
     let heights = grid(&heights, cell)?;
     let rain = rain.map(|rain| grid(&rain, cell)).transpose()?;
     if rain.as_ref().is_some_and(|rain| rain.window() != heights.window()) {
@@ -153,7 +154,7 @@ pub fn watersheds<'py>(
     heights: Heights<'py>,
     sea_level: Option<f32>,
     progress: Listener<'_, 'py>,
-) -> PyResult<Bound<'py, PyArray2<u32>>> {
+) -> PyResult<Array<'py, u32>> {
     let heights = grid(&heights, 1.0)?;
     let made = run(py, progress, |progress| {
         let [draining, labeling] = progress.parts([4.0, 1.0]);
@@ -173,7 +174,7 @@ pub fn stream_order<'py>(
     area: f64,
     sea_level: Option<f32>,
     progress: Listener<'_, 'py>,
-) -> PyResult<Bound<'py, PyArray2<u8>>> {
+) -> PyResult<Array<'py, u8>> {
     let heights = grid(&heights, cell)?;
     let threshold = cells(py, area, cell)?;
     let made = run(py, progress, |progress| {
@@ -194,7 +195,7 @@ pub fn above_drainage<'py>(
     area: f64,
     sea_level: Option<f32>,
     progress: Listener<'_, 'py>,
-) -> PyResult<(Bound<'py, PyArray2<f32>>, Bound<'py, PyArray2<f32>>)> {
+) -> PyResult<(Array<'py, f32>, Array<'py, f32>)> {
     let heights = grid(&heights, cell)?;
     let threshold = cells(py, area, cell)?;
     let made = run(py, progress, |progress| {
@@ -217,7 +218,7 @@ pub fn lakes<'py>(
     area: f64,
     sea_level: Option<f32>,
     progress: Listener<'_, 'py>,
-) -> PyResult<(Bound<'py, PyArray2<u32>>, Bound<'py, PyArray2<f32>>)> {
+) -> PyResult<(Array<'py, u32>, Array<'py, f32>)> {
     let heights = grid(&heights, cell)?;
     let fewest = cells(py, area, cell)?;
     let made = run(py, progress, |progress| {
