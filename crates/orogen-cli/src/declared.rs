@@ -8,9 +8,11 @@ use clap::{Arg, ArgAction, ArgMatches, Command};
 use orogen::builder::BuildSpec;
 use orogen::export::derived::list;
 use orogen::export::registry;
+use orogen::export::targets::job::EngineJob;
+use orogen::fit::FitJob;
 use orogen::jobs::noise::NoiseJob;
 use orogen::jobs::variants::VariantsJob;
-use orogen::jobs::{BlocksJob, MapJob, RenderJob};
+use orogen::jobs::{AnalyzeJob, BlocksJob, GrowJob, MapJob, RenderJob};
 use orogen::options::{Choice, Condition, OptionSpec, Options, ValueKind};
 use orogen::tilemap::TilemapJob;
 
@@ -61,7 +63,19 @@ macro_rules! jobs {
     )* };
 }
 
-jobs!(MapJob, RenderJob, BlocksJob, TilemapJob, NoiseJob, VariantsJob, BuildSpec);
+jobs!(
+    MapJob,
+    RenderJob,
+    BlocksJob,
+    TilemapJob,
+    NoiseJob,
+    VariantsJob,
+    BuildSpec,
+    GrowJob,
+    AnalyzeJob,
+    FitJob,
+    EngineJob
+);
 
 /// Those that were given.
 #[derive(Debug, Clone, Default)]

@@ -67,6 +67,15 @@ pub fn split(position: f64, cell: f64) -> (i64, f32) {
     if share >= 1.0 { (index + 1, 0.0) } else { (index, share) }
 }
 
+/// Moves every sample by a share of the way to that of another grid over the same window: at 0 it stays, at 1 it is the
+/// other one, except for rounding.
+// Never in the caller's crate, which may be compiled without optimization.
+#[inline(never)]
+pub fn blend(grid: &mut Grid, other: &Grid, share: f32) {
+    let pairs = grid.data_mut().iter_mut().zip(other.data());
+    pairs.for_each(|(sample, other)| *sample += share * (other - *sample));
+}
+
 /// Number of columns of a lattice that are processed together.
 const COLUMNS: usize = 256;
 
@@ -240,6 +249,16 @@ mod tests {
         let (index, share) = split(1.0 - 1e-12, 1.0);
         assert_eq!((index, share), (1, 0.0));
         assert_eq!(split(-0.25, 1.0), (-1, 0.75));
+    }
+
+    #[test]
+    fn blended_samples_lie_between_both() {
+        let grid = |samples: [f32; 3]| Grid::from_data(Window::new(3, 1, 1.0), samples.to_vec()).unwrap();
+        for (share, expect) in [(0.0, [0.0, 8.0, -4.0]), (0.25, [1.0, 8.0, -2.0]), (1.0, [4.0, 8.0, 4.0])] {
+            let mut blended = grid([0.0, 8.0, -4.0]);
+            blend(&mut blended, &grid([4.0, 8.0, 4.0]), share);
+            assert_eq!(blended, grid(expect), "{share}");
+        }
     }
 
     #[test]

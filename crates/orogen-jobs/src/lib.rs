@@ -1,7 +1,7 @@
-//! Exports, builds, map sheets, renders, tilemaps and fits of worlds, each as a job that writes its files.
+//! Exports, builds, map sheets, renders, tilemaps, frames of erosion, analyses and fits of worlds as jobs.
 //!
 //! - [`export`]: a registry of layers and formats, for every front end.
-//! - [`jobs`]: a map sheet or a rendered picture of a world as one job.
+//! - [`jobs`]: a map sheet, a rendered picture, frames of erosion or statistics of a world as one job.
 //! - [`options`]: declarations of options, from which front ends derive theirs.
 //! - [`builder`]: worlds of any size written to files, with resume.
 //! - [`tilemap`]: terrain classes drawn with tiles.

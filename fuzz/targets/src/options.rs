@@ -8,12 +8,14 @@ use clap::{Args, Command, FromArgMatches};
 use orogen::builder::BuildSpec;
 use orogen::export::derived::list;
 use orogen::export::registry;
+use orogen::export::targets::job::EngineJob;
 use orogen::expression::Expression;
+use orogen::fit::FitJob;
 use orogen::io::format::crs::Crs;
 use orogen::io::palette::names;
 use orogen::jobs::noise::NoiseJob;
 use orogen::jobs::variants::VariantsJob;
-use orogen::jobs::{BlocksJob, MapJob, RenderJob};
+use orogen::jobs::{AnalyzeJob, BlocksJob, GrowJob, MapJob, RenderJob};
 use orogen::options::Options;
 use orogen::output::sheet::paper;
 use orogen::tilemap::TilemapJob;
@@ -67,7 +69,9 @@ pub fn run(input: &[u8]) {
     let of_files = registry::options().into_iter().map(|(spec, _)| spec);
     let of_layers = list::options().into_iter().map(|(spec, _)| spec);
     let of_jobs = [MapJob::OPTIONS, RenderJob::OPTIONS, TilemapJob::OPTIONS, BlocksJob::OPTIONS].into_iter().flatten();
-    let of_pictures = [NoiseJob::OPTIONS, VariantsJob::OPTIONS, BuildSpec::OPTIONS].into_iter().flatten();
+    let of_pictures = [NoiseJob::OPTIONS, VariantsJob::OPTIONS, GrowJob::OPTIONS].into_iter().flatten();
+    let of_others =
+        [BuildSpec::OPTIONS, EngineJob::OPTIONS, AnalyzeJob::OPTIONS, FitJob::OPTIONS].into_iter().flatten();
     let mut options = Options::default();
     for spec in of_files.chain(of_layers) {
         let _ = options.give(spec, text);
@@ -77,7 +81,7 @@ pub fn run(input: &[u8]) {
         let _ = options.give(spec, text);
     }
     let mut of_own = Options::default();
-    for spec in of_pictures {
+    for spec in of_pictures.chain(of_others) {
         let _ = of_own.give(spec, text);
     }
     assert!(options.number("time").is_none_or(|hours| (0.0..24.0).contains(&hours)), "{text}");

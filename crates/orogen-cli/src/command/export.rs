@@ -4,16 +4,13 @@ use std::path::PathBuf;
 
 use orogen::World;
 use orogen::export::derived::list;
-use orogen::export::targets::frame::FrameSpec;
 use orogen::export::targets::job::EngineJob;
-use orogen::export::targets::target::EngineTarget;
 use orogen::export::{ExportJob, Format, registry};
 use orogen::grid::words::{count, number};
 use orogen::io::file::OutputPolicy;
-use orogen::view::Size;
 
 use crate::bar::Bar;
-use crate::declared::{FormatOptions, LayerOptions};
+use crate::declared::{FormatOptions, LayerOptions, OptionsOf};
 use crate::failure::Failure;
 use crate::options::{Opened, RunOptions};
 use crate::sink::{Sink, is_stdout};
@@ -38,14 +35,8 @@ pub struct Args {
     layer: String,
     #[command(flatten)]
     samples: SizedView,
-    /// Game engine to write for: sets format, scale, row order and sizes, and prints the settings for its import
-    /// dialog. --size is the number of samples along each side, of each tile if there are several [default: as many as
-    /// the world has]
-    #[arg(long, help_heading = "Engines", value_name = "ENGINE", value_parser = name_of::engine(), conflicts_with = "format")]
-    target: Option<&'static EngineTarget>,
-    /// Number of tiles for the engine, east and south; adjacent tiles share the samples along their common edge
-    #[arg(long, help_heading = "Engines", value_name = "NxM", requires = "target")]
-    tiles: Option<Size>,
+    #[command(flatten)]
+    engine: OptionsOf<EngineJob>,
     #[command(flatten)]
     run: RunOptions,
     #[command(flatten)]
@@ -98,62 +89,20 @@ fn export(args: &Args) -> Result<(), Failure> {
     let policy = policy.protecting(job.files());
     job.prepare(&mut recipe)?;
     let world = args.run.limits.open(recipe, &budget)?;
-    if let Some(target) = args.target {
-        return for_engine(args, &engine_job(args, target, &job, &world)?, &world, &policy);
+    let view = args.samples.view.samples(args.samples.size)?;
+    if let Some(engine) = EngineJob::chosen(&job, &args.engine.read()?, &view, world.recipe())? {
+        return for_engine(args, &engine, &world, &policy);
     }
     let window = args.samples.window(&world)?;
     let sink = Sink::new(&args.out, &policy)?;
     layer_file::write(job, &world, window, (&args.out, &sink), "", args.run.quiet)
 }
 
-/// The same layer for an engine.
-fn engine_job(
-    args: &Args,
-    target: &'static EngineTarget,
-    job: &ExportJob,
-    world: &World,
-) -> Result<EngineJob, Failure> {
+/// Writes the layer for an engine.
+fn for_engine(args: &Args, job: &EngineJob, world: &World, policy: &OutputPolicy) -> Result<(), Failure> {
     if is_stdout(&args.out) {
         return Err(Failure::Usage("--target cannot write to standard output; name a file with -o".into()));
     }
-    let view = args.samples.view.samples(None)?;
-    let mut samples = FrameSpec::default();
-    samples.side = match args.samples.size {
-        None => None,
-        Some(Size::Longer(side)) => Some(side),
-        Some(Size::Both(width, height)) if width == height => Some(width),
-        Some(Size::Both(width, height)) => {
-            return Err(Failure::Usage(format!(
-                "{} only takes square terrains, not {width} x {height} samples",
-                target.name
-            )));
-        }
-    };
-    samples.cell = view.cell;
-    let lattice = world.recipe().world.cell;
-    if view.cell.is_none() {
-        // A window in metres is resampled to a size of the engine.
-        samples.area = view.ends(world.recipe(), lattice)?;
-    }
-    if samples.area.is_none() {
-        samples.window = view.part(world.recipe(), view.cell.unwrap_or(lattice))?;
-    }
-    samples.tiles = args.tiles.map(|tiles| match tiles {
-        Size::Longer(count) => [count, count],
-        Size::Both(across, down) => [across, down],
-    });
-    let layer_options = job.layer_options.clone();
-    let job = EngineJob::new(target, job.format)
-        .with_layer(&job.layer)
-        .with_options(job.options.clone())
-        .with_layer_options(layer_options)
-        .with_samples(samples);
-    job.check()?;
-    Ok(job)
-}
-
-/// Writes the layer for an engine.
-fn for_engine(args: &Args, job: &EngineJob, world: &World, policy: &OutputPolicy) -> Result<(), Failure> {
     let (bar, progress) = Bar::new(args.run.quiet);
     let made = job
         .run(world, &policy.output(&args.out)?, &progress)

@@ -1,8 +1,7 @@
-//! Values that are names of declared items: formats, engines, noises.
+//! Values that are names of declared items: formats, noises.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use orogen::export::targets::target::EngineTarget;
-use orogen::export::{Format, registry, targets};
+use orogen::export::{Format, registry};
 use orogen::jobs::{BlockFormat, SheetFormat};
 use orogen::noise::Basis;
 
@@ -30,11 +29,6 @@ pub fn basis() -> impl TypedValueParser<Value = Basis> {
 /// The formats of layers.
 pub fn format() -> impl TypedValueParser<Value = &'static Format> {
     one_of(registry::all().iter().map(|format| (named(format.name, format.about).aliases(format.aliases), *format)))
-}
-
-/// The engines.
-pub fn engine() -> impl TypedValueParser<Value = &'static EngineTarget> {
-    one_of(targets::list::all().iter().map(|target| (named(target.name, target.about), *target)))
 }
 
 /// The formats of map sheets.

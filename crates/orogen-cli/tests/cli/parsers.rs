@@ -5,8 +5,10 @@ use crate::values::bytes::Bytes;
 use crate::values::number;
 use crate::values::region;
 use crate::values::seeds;
+use orogen::export::targets::job::EngineJob;
+use orogen::fit::FitJob;
 use orogen::jobs::noise::NoiseJob;
-use orogen::jobs::{MapJob, RenderJob};
+use orogen::jobs::{AnalyzeJob, GrowJob, MapJob, RenderJob};
 use orogen::options::{OptionSpec, Options};
 use orogen::output::sheet::paper::Paper;
 use orogen::view::{Bounds, MAX_SIDE, Rectangle, Size};
@@ -25,7 +27,9 @@ where
 
 /// The declared options of jobs.
 fn declared() -> impl Iterator<Item = &'static OptionSpec> {
-    MapJob::OPTIONS.iter().chain(RenderJob::OPTIONS).chain(NoiseJob::OPTIONS)
+    let drawn = [MapJob::OPTIONS, RenderJob::OPTIONS, NoiseJob::OPTIONS, GrowJob::OPTIONS];
+    let others = [AnalyzeJob::OPTIONS, FitJob::OPTIONS, EngineJob::OPTIONS];
+    drawn.into_iter().chain(others).flatten()
 }
 
 /// The options with this value; `None` if it is not valid.

@@ -1,12 +1,17 @@
-//! Recipes with the statistics of a real place, without its data.
+//! Recipes with the statistics of a real place, without its data: a [`FitJob`] finds one.
 
 #[doc(hidden)]
 pub mod features;
+#[doc(hidden)]
+pub mod job;
+mod report;
 #[doc(hidden)]
 pub mod search;
 #[doc(hidden)]
 pub mod template;
 
 pub use features::FeatureVector;
+pub use job::{FitJob, FitResult};
+pub use report::FitReport;
 pub use search::{Effort, FitTarget, Found, search};
 pub use template::FittedWorld;

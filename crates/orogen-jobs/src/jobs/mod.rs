@@ -1,13 +1,19 @@
-//! What is drawn of a world, as one job each: a map sheet, a rendered picture, blocks; and noises.
+//! What is made of a world, as one job each: a map sheet, a rendered picture, blocks, frames of its erosion, statistics;
+//! and noises.
 //!
 //! Prepare a recipe with a job, open its world, then write to a file. Layers and packages for game engines have jobs of
-//! their own in [`export`](crate::export), and maps of tiles in [`tilemap`](crate::tilemap).
+//! their own in [`export`](crate::export), maps of tiles in [`tilemap`](crate::tilemap), and fits to real places in
+//! [`fit`](crate::fit).
 
+#[doc(hidden)]
+pub mod analyze;
 #[doc(hidden)]
 pub mod blocks;
 mod color_bar;
 mod drawn_map;
 mod finite;
+#[doc(hidden)]
+pub mod grow;
 #[doc(hidden)]
 pub mod map;
 mod map_names;
@@ -23,7 +29,9 @@ pub mod sheet_format;
 #[doc(hidden)]
 pub mod variants;
 
+pub use analyze::{Analysis, AnalyzeJob};
 pub use blocks::{BlockFormat, BlocksJob};
+pub use grow::{GrowJob, GrownFrames};
 pub use map::{MapColors, MapJob};
 pub use render::RenderJob;
 pub use sheet_format::SheetFormat;

@@ -303,11 +303,12 @@ fn tuple(text: &str, components: &[Component], least: usize) -> Result<Vec<f64>,
 /// Parses one or two sides.
 fn sides(text: &str, most: usize) -> Result<Vec<f64>, String> {
     let side = |text: &str| text.trim().parse::<usize>().ok().filter(|side| (1..=most).contains(side));
-    let sides = match text.split_once(['x', 'X']) {
+    let sides = match text.split_once(['x', 'X', '×']) {
         Some((width, height)) => side(width).zip(side(height)).map(|(width, height)| vec![width as f64, height as f64]),
         None => side(text).map(|side| vec![side as f64]),
     };
-    sides.ok_or_else(|| format!("it must be N or WxH, such as 1920x1080, with sides from 1 to {most}"))
+    let example = if most < 1920 { "2x2" } else { "1920x1080" };
+    sides.ok_or_else(|| format!("it must be N or WxH, such as {example}, with sides from 1 to {most}"))
 }
 
 /// Parses a time of day; returns hours after midnight.

@@ -2,7 +2,9 @@
 
 use super::target::EngineTarget;
 use crate::export::files::suffixed;
+use orogen_engine::recipe::document::Recipe;
 use orogen_engine::tiles::Tiling;
+use orogen_engine::view::{Size, View};
 use orogen_engine::world::World;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
@@ -11,6 +13,9 @@ use orogen_io::file::Output;
 
 /// Tolerance, in cells, for an area that begins at a sample.
 const NEAR: f64 = 1e-6;
+
+/// Maximum number of tiles along a side.
+pub(super) const MAX_TILES: usize = 100;
 
 /// The requested samples; missing values are chosen by the target.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -31,6 +36,34 @@ pub struct FrameSpec {
 }
 
 impl FrameSpec {
+    /// The samples that a view of a world selects for a target, in one tile. The size of the view is the number of
+    /// samples along each side; a part in metres or map coordinates is resampled, unless the view has a cell.
+    ///
+    /// # Errors
+    /// If the size is not a square, or the part is not inside the world or has no sample.
+    pub fn of_view(view: &View, target: &EngineTarget, recipe: &Recipe) -> Result<FrameSpec> {
+        let side = match view.size {
+            None => None,
+            Some(Size::Longer(side)) => Some(side),
+            Some(Size::Both(width, height)) if width == height => Some(width),
+            Some(Size::Both(width, height)) => {
+                let name = target.name;
+                return refuse(format!("{name} only takes square terrains, not {width} x {height} samples"));
+            }
+        };
+        let part = View { size: None, ..*view };
+        let lattice = recipe.world.cell;
+        let mut samples = FrameSpec { side, cell: part.cell, ..FrameSpec::default() };
+        if part.cell.is_none() {
+            // A window in metres is resampled to a size of the engine.
+            samples.area = part.ends(recipe, lattice)?;
+        }
+        if samples.area.is_none() {
+            samples.window = part.part(recipe, part.cell.unwrap_or(lattice))?;
+        }
+        Ok(samples)
+    }
+
     /// The same with this many samples along a side.
     pub fn with_side(self, side: usize) -> FrameSpec {
         FrameSpec { side: Some(side), ..self }
@@ -86,8 +119,8 @@ impl Frame {
         if asked.tiles.is_some() && target.tile.is_none() {
             return refuse(format!("{} imports a single file and splits it itself; leave out --tiles", target.name));
         }
-        if tiles.contains(&0) || tiles.iter().any(|count| *count > 100) {
-            return refuse("--tiles must be 1 to 100 tiles per side, such as --tiles 2x2".into());
+        if tiles.contains(&0) || tiles.iter().any(|count| *count > MAX_TILES) {
+            return refuse(format!("--tiles must be 1 to {MAX_TILES} tiles per side, such as --tiles 2x2"));
         }
         let spec = &world.recipe().world;
         let cell = asked.cell.unwrap_or(spec.cell);
@@ -221,7 +254,6 @@ fn allowed(target: &EngineTarget, side: usize) -> Result<usize> {
 mod tests {
     use super::*;
     use crate::export::targets::list;
-    use orogen_engine::recipe::document::Recipe;
 
     fn frame(target: &str, size: &str, asked: FrameSpec) -> std::result::Result<Frame, String> {
         let text = format!(
@@ -271,6 +303,37 @@ mod tests {
         assert_eq!((fine.side, fine.window.cell), (1025, 5000.0 / 1024.0));
         let tiny = FrameSpec::default().with_area([0.0, 0.0, 5.0, 5.0]);
         assert!(frame("unity", "size = [10240, 10240]", tiny).unwrap_err().contains("smaller than a cell"));
+    }
+
+    /// The samples of a view of a world of 10240 m, for Unity.
+    fn of_view(view: View) -> std::result::Result<FrameSpec, String> {
+        let text = "orogen = 1\n[world]\nsize = [10240, 10240]\ncell = 10\n[nodes.a]\nop = \"constant\"\n";
+        let recipe = Recipe::parse(&format!("{text}[outputs]\nheight = \"a\"\n"), "test").unwrap();
+        FrameSpec::of_view(&view, list::named("unity").unwrap(), &recipe).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_view_selects_samples_or_an_area() {
+        let (none, metres) = (View::default(), Some("2km,3km,5km,5km".parse().unwrap()));
+        assert_eq!(of_view(none), Ok(FrameSpec::default()));
+        let sized = View { size: Some(Size::Both(513, 513)), cell: Some(5.0), ..none };
+        assert_eq!(of_view(sized), Ok(FrameSpec::default().with_side(513).with_cell(5.0)));
+        let area = FrameSpec::default().with_area([2000.0, 3000.0, 7000.0, 8000.0]);
+        assert_eq!(of_view(View { window: metres, ..none }), Ok(area));
+        let larger = View { window: metres, size: Some(Size::Longer(1025)), ..none };
+        assert_eq!(of_view(larger), Ok(area.with_side(1025)));
+        let window = Window::new(1000, 1000, 5.0).at(400, 600);
+        let with_cell = View { window: metres, cell: Some(5.0), ..none };
+        assert_eq!(of_view(with_cell), Ok(FrameSpec::default().with_cell(5.0).with_window(window)));
+        let samples = View { window: Some("7,9,513,513".parse().unwrap()), ..none };
+        assert_eq!(of_view(samples), Ok(FrameSpec::default().with_window(Window::new(513, 513, 10.0).at(7, 9))));
+        for (view, expect) in [
+            (View { size: Some(Size::Both(33, 65)), ..none }, "unity only takes square terrains, not 33 x 65 samples"),
+            (View { bounds: Some("0,0,100,100".parse().unwrap()), ..none }, "not inside the world"),
+        ] {
+            let why = of_view(view).unwrap_err();
+            assert!(why.contains(expect), "{why}");
+        }
     }
 
     #[test]

@@ -2,14 +2,18 @@
 
 use std::path::PathBuf;
 
-use super::frame::{Frame, FrameSpec};
+use super::frame::{Frame, FrameSpec, MAX_TILES};
+use super::list as targets;
 use super::target::EngineTarget;
 use crate::export::channels::PREVIEW;
 use crate::export::derived::list;
 use crate::export::format::Format;
+use crate::export::job::ExportJob;
 use crate::export::{features, registry};
-use crate::options::Options;
+use crate::options::Condition::Given;
+use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_engine::recipe::document::Recipe;
+use orogen_engine::view::View;
 use orogen_engine::world::HEIGHT;
 use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -36,7 +40,52 @@ pub struct EngineJob {
     pub samples: FrameSpec,
 }
 
+const HEADING: &str = "Engines";
+
+const OPTIONS: &[OptionSpec] = &[
+    OptionSpec::new("target", "ENGINE", ValueKind::Choice(&targets::CHOICES))
+        .with_about(
+            "Game engine to write for: sets format, scale, row order and sizes, and prints the settings for its import \
+             dialog. --size is the number of samples along each side, of each tile if there are several [default: as \
+             many as the world has]",
+        )
+        .without(&["format"])
+        .under(HEADING),
+    OptionSpec::new("tiles", "NxM", ValueKind::Size(MAX_TILES))
+        .with_about(
+            "Number of tiles for the engine, east and south; adjacent tiles share the samples along their common edge",
+        )
+        .when(Given("target"))
+        .under(HEADING),
+];
+
 impl EngineJob {
+    /// The options, for front ends.
+    pub const OPTIONS: &[OptionSpec] = OPTIONS;
+
+    /// The export of the layer of another job for the engine that is chosen by [`OPTIONS`](EngineJob::OPTIONS), of the
+    /// samples that a view of a world of `recipe` selects; `None` if no engine is chosen.
+    ///
+    /// # Errors
+    /// If an option does not apply, or the errors of [`FrameSpec::of_view`] and [`check`](EngineJob::check).
+    pub fn chosen(export: &ExportJob, options: &Options, view: &View, recipe: &Recipe) -> Result<Option<EngineJob>> {
+        options.check(OPTIONS)?;
+        let Some(target) = options.word("target").and_then(targets::named) else { return Ok(None) };
+        let mut samples = FrameSpec::of_view(view, target, recipe)?;
+        samples.tiles = match options.numbers("tiles") {
+            Some(&[across, down]) => Some([across as usize, down as usize]),
+            Some(&[count]) => Some([count as usize; 2]),
+            _ => None,
+        };
+        let job = EngineJob::new(target, export.format)
+            .with_layer(&export.layer)
+            .with_options(export.options.clone())
+            .with_layer_options(export.layer_options.clone())
+            .with_samples(samples);
+        job.check()?;
+        Ok(Some(job))
+    }
+
     /// The heights of the whole world.
     pub fn new(target: &'static EngineTarget, format: &'static Format) -> EngineJob {
         EngineJob {
@@ -112,4 +161,51 @@ pub struct Exported {
     pub count: FiniteCount,
     /// Values for the engine's import dialog, one line each; empty for layers other than the heights.
     pub import: Vec<String>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The job for these options and a view of 33 samples, of the slope with a preview or with a first row.
+    fn chosen(given: &[(&str, &str)], format_option: &str) -> std::result::Result<Option<EngineJob>, String> {
+        let text = "orogen = 1\n[world]\nsize = [640, 640]\n[nodes.a]\nop = \"constant\"\n[outputs]\nheight = \"a\"\n";
+        let recipe = Recipe::parse(text, "test").unwrap();
+        let view = View { size: Some("33".parse().unwrap()), ..View::default() };
+        let specs = registry::options().into_iter().map(|(spec, _)| spec);
+        let value = if format_option == "first-row" { "north" } else { "" };
+        let of_format = Options::of(specs, [(format_option, value)]).unwrap();
+        let format = registry::named("png").unwrap();
+        let export = ExportJob::new(format).with_layer("slope").with_options(of_format);
+        let options = Options::of(OPTIONS, given.iter().copied());
+        options
+            .and_then(|options| EngineJob::chosen(&export, &options, &view, &recipe))
+            .map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn an_engine_takes_the_layer_and_the_samples() {
+        assert!(chosen(&[], "preview").unwrap().is_none());
+        let job = chosen(&[("target", "unity")], "preview").unwrap().unwrap();
+        assert_eq!((job.target.name, job.format.name, job.layer.as_str()), ("unity", "png", "slope"));
+        assert!(job.options.has("preview") && job.samples == FrameSpec::default().with_side(33));
+        for (text, tiles) in [("2x1", [2, 1]), ("3", [3, 3]), ("100 \u{d7} 1", [100, 1])] {
+            let job = chosen(&[("target", "unity"), ("tiles", text)], "preview").unwrap().unwrap();
+            assert_eq!(job.samples.tiles, Some(tiles), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_an_engine_does_not_take_is_a_sentence() {
+        for (given, option, expect) in [
+            (&[("tiles", "2x2")][..], "preview", "--tiles needs --target"),
+            (&[("target", "cryengine")], "preview", "it must be unreal, unity, terrain3d or hterrain"),
+            (&[("target", "unity"), ("tiles", "0x2")], "preview", "N or WxH, such as 2x2, with sides from 1 to 100"),
+            (&[("target", "unity"), ("tiles", "101")], "preview", "N or WxH, such as 2x2, with sides from 1 to 100"),
+            (&[("target", "unity")], "first-row", "--target unity sets --first-row; leave it out"),
+        ] {
+            let why = chosen(given, option).unwrap_err();
+            assert!(why.contains(expect), "{why}");
+        }
+    }
 }
