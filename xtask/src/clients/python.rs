@@ -35,8 +35,8 @@ pub fn check() -> Result {
     sh(inside(&["-m", "mypy", "--strict", "--no-incremental", "--config-file"])
         .arg(settings)
         .arg(python.join("tests/typed.py")))?;
-    sh(inside(&["-m", "mypy", "--strict", "--no-incremental", "-p", "orogen"]))?;
-    sh(inside(&["-m", "mypy.stubtest", "orogen._orogen"]))
+    sh(&mut inside(&["-m", "mypy", "--strict", "--no-incremental", "-p", "orogen"]))?;
+    sh(&mut inside(&["-m", "mypy.stubtest", "orogen._orogen"]))
 }
 
 /// The wheel.
