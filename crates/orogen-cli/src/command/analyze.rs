@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use orogen::jobs::{Analysis, AnalyzeJob};
+use orogen::jobs::AnalyzeJob;
+use orogen::jobs::analyze::Analysis;
 
 use crate::bar::Bar;
 use crate::declared::OptionsOf;

@@ -4,14 +4,14 @@
 pub mod features;
 #[doc(hidden)]
 pub mod job;
-mod report;
+#[doc(hidden)]
+pub mod report;
 #[doc(hidden)]
 pub mod search;
 #[doc(hidden)]
 pub mod template;
 
 pub use features::FeatureVector;
-pub use job::{FitJob, FitResult};
-pub use report::FitReport;
+pub use job::FitJob;
 pub use search::{Effort, FitTarget, Found, search};
 pub use template::FittedWorld;

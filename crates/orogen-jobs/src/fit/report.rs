@@ -55,8 +55,8 @@ impl FitReport {
     pub fn words(&self) -> String {
         let FitReport { name, cell, side, tried, .. } = self;
         format!(
-            "land like {name}, found among {tried} settings; medians over windows of {side} x {side} samples of {cell:.1} \
-             m\n\n{}",
+            "land like {name}, found among {tried} settings; medians over windows of {side} x {side} samples of \
+             {cell:.1} m\n\n{}",
             self.table()
         )
     }

@@ -117,9 +117,9 @@ impl GrowJob {
     }
 
     /// Makes the heights of the frames over a window, of a world of a [prepared](GrowJob::prepare) recipe. Painting and
-    /// writing them is the rest of `progress`. The memory of a picture of three bytes per sample, and of `writing` bytes
-    /// for its encoder, is reserved with that of the heights. Heights of more than a few frames wait in a temporary
-    /// file on the disk of `out`.
+    /// writing them is the rest of `progress`. The memory of a picture of three bytes per sample, and of `writing`
+    /// bytes for its encoder, is reserved with that of the heights. Frames that take more than 8 MiB together wait in a
+    /// temporary file on the disk of `out`.
     ///
     /// # Errors
     /// If a field is out of its range, the heights read no node `stream-power`, or the world cannot make the window; if

@@ -1,5 +1,5 @@
-//! What is made of a world, as one job each: a map sheet, a rendered picture, blocks, frames of its erosion, statistics;
-//! and noises.
+//! What is made of a world, as one job each: a map sheet, a rendered picture, blocks, frames of its erosion,
+//! statistics; and noises.
 //!
 //! Prepare a recipe with a job, open its world, then write to a file. Layers and packages for game engines have jobs of
 //! their own in [`export`](crate::export), maps of tiles in [`tilemap`](crate::tilemap), and fits to real places in
@@ -29,9 +29,9 @@ pub mod sheet_format;
 #[doc(hidden)]
 pub mod variants;
 
-pub use analyze::{Analysis, AnalyzeJob};
+pub use analyze::AnalyzeJob;
 pub use blocks::{BlockFormat, BlocksJob};
-pub use grow::{GrowJob, GrownFrames};
+pub use grow::GrowJob;
 pub use map::{MapColors, MapJob};
 pub use render::RenderJob;
 pub use sheet_format::SheetFormat;
