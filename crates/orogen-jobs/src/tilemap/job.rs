@@ -66,8 +66,7 @@ impl TilemapJob {
         TilemapJob { is_infinite, ..self }
     }
 
-    /// The samples of a world that a map has: [`SIDE`] along the longer side, if neither a part nor a cell nor a size is
-    /// chosen.
+    /// The samples of a world that a map has: [`SIDE`] along the longer side, if no part, cell or size is chosen.
     #[must_use]
     pub fn view(view: &View) -> View {
         view.sized(SIDE)
