@@ -31,7 +31,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step of
 
   install   apt (as root on Debian); rustup's wasm32-unknown-unknown
   packages  pip into target/clients/venv, npm into target/clients/node; versions pinned
-  build     cargo build --release -p orogen-cli
+  build     cargo build --release of the command line and of the Python package
   window    clippy and build of the studio's window and of graphics cards
   wasm      the libraries built for WebAssembly, without threads; four presets under node, and a world without files
   presets   every preset against golden/presets.txt, at every SIMD level of this machine, on one thread or two
@@ -51,7 +51,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step of
   relief    gdaldem computes the same hillshade, slope and aspect
   layers    WhiteboxTools and traces along flow directions give the same layers of water
   taplo     taplo validates every recipe against the JSON Schema, and rejects broken ones
-  python    the Python package, as a wheel in a new environment: its tests, its types, its generated files
+  python    the Python package in a new environment: its tests, its types, its generated files
   studio    the studio's tests with Mesa's software Vulkan, and its window under Xvfb in both languages
   gpu       fields, filters, presets and pictures on a graphics card, or Mesa's software Vulkan, beside the processor's; and without any card
 
@@ -64,6 +64,7 @@ Only if named or with --all, because they take long or need large programs:
   fuzz      libFuzzer on the readers of foreign files, 60 s each
   luanti    a Luanti server opens worlds of blocks: the same blocks
   grass     GRASS and gdaldem compute the same derived layers: wetness, insolation, viewshed, landforms ...
+  wheel     the same tests of the Python package as the wheel that maturin makes
   blender   Blender imports meshes: size, summit and light are right; needs Python 3.11
 
 xtask/clients/passed.txt says when each of these last passed; a run without them prints those that are older than 14 days.
@@ -176,7 +177,6 @@ const CLIENTS: &[Client] = &[
             NUMPY,
             "xarray==2026.9.0",
             "dask==2026.8.0",
-            "maturin==1.16.0",
             "pytest==9.2.0",
             "hypothesis==6.170.17",
             "mypy==2.4.1",
@@ -184,6 +184,7 @@ const CLIENTS: &[Client] = &[
         ],
         npm: &[],
     },
+    Client { name: "wheel", apt: &[], pip: &["maturin==1.16.0"], npm: &[] },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
 
@@ -222,9 +223,9 @@ const PACKAGES: Step = Step {
 };
 const BUILD: Step = Step {
     name: "build",
-    about: "cargo build --release -p orogen-cli",
+    about: "cargo build --release -p orogen-cli -p orogen-py",
     group: Some(1),
-    run: || sh(&mut cargo("build --quiet --release --package orogen-cli")),
+    run: || sh(&mut cargo("build --quiet --release --package orogen-cli --package orogen-py")),
 };
 
 /// Of the steps that run in parallel, the longest ones come first.
@@ -267,6 +268,7 @@ const ON_REQUEST: &[&Step] = &[
         noted("grass", || script_for("grass", "layers"))
     }),
     &beside("blender", "Blender imports meshes", || noted("blender", blender::check)),
+    &alone("wheel", "the Python package as a wheel", || noted("wheel", python::check_wheel)),
     // These two share their folders with `wasm` and `presets`.
     &alone("wasm-all", "every preset made by the libraries built for WebAssembly", || {
         noted("wasm-all", wasm::check_all)

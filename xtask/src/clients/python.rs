@@ -1,51 +1,74 @@
-//! The Python package: a wheel, installed into a new environment, where its tests run.
+//! The Python package in a new environment, where its tests run.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use super::install;
 use crate::failure::{Failure, Result};
 use crate::shell::{self, program, root, run as sh, target_dir};
 
-/// Builds the wheel from what the release build has compiled, installs it, and tests it from there.
+/// Tests the package with the native part of the release build, laid out as in the wheel.
 pub fn check() -> Result {
+    let (venv, site) = environment("python")?;
+    let native = target_dir().join("release").join(format!(
+        "{}_orogen{}",
+        std::env::consts::DLL_PREFIX,
+        std::env::consts::DLL_SUFFIX
+    ));
+    let mut lay_out = program(install::python());
+    sh(lay_out.arg(root().join("xtask/clients/install_python.py")).arg(native).arg(&site))?;
+    test(&venv, &site)
+}
+
+/// Tests the wheel that maturin makes.
+pub fn check_wheel() -> Result {
     let wheel = wheel()?;
-    let venv = super::folder().join("work/python");
-    shell::empty_dir(&venv)?;
-    sh(program(install::python()).args(["-m", "venv", "--without-pip"]).arg(&venv))?;
-    // What it needs is that of the other clients; the package itself is only in the new environment.
-    let site = site_packages(&venv)?;
-    shell::write(&site.join("clients.pth"), &format!("{}\n", site_packages(&install::venv())?.display()))?;
+    let (venv, site) = environment("wheel")?;
     let mut unpack = program(install::python());
     unpack.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--no-index"]);
     sh(unpack.arg("--target").arg(&site).arg(&wheel))?;
-    let inside = |args: &[&str]| {
+    test(&venv, &site)
+}
+
+/// The tests of the package, its generated files and its types.
+fn test(venv: &Path, site: &Path) -> Result {
+    let inside = |args: &[&str]| -> Command {
         let mut command = program(venv.join("bin/python"));
         // Away from the sources, so that only what was installed is imported.
-        command.current_dir(&venv).args(args);
+        command.current_dir(venv).args(args);
         command
     };
     let python = root().join("python");
+    let settings = python.join("pyproject.toml");
     sh(inside(&[]).arg(python.join("generate.py")).arg("--check").arg(site.join("orogen")))?;
     sh(inside(&["-m", "pytest", "-p", "no:cacheprovider", "-c"])
-        .arg(python.join("pyproject.toml"))
+        .arg(&settings)
         .arg("--rootdir")
-        .arg(&venv)
+        .arg(venv)
         .arg(python.join("tests")))?;
-    let settings = python.join("pyproject.toml");
     sh(inside(&["-m", "mypy", "--strict", "--no-incremental", "--config-file"])
-        .arg(settings)
+        .arg(&settings)
         .arg(python.join("tests/typed.py")))?;
     sh(&mut inside(&["-m", "mypy", "--strict", "--no-incremental", "-p", "orogen"]))?;
     sh(&mut inside(&["-m", "mypy.stubtest", "orogen._orogen"]))
 }
 
-/// The wheel.
+/// A new environment, and the folder of its packages. What the package needs is that of the other clients.
+fn environment(name: &str) -> Result<(PathBuf, PathBuf)> {
+    let venv = super::folder().join("work").join(name);
+    shell::empty_dir(&venv)?;
+    sh(program(install::python()).args(["-m", "venv", "--without-pip"]).arg(&venv))?;
+    let site = site_packages(&venv)?;
+    shell::write(&site.join("clients.pth"), &format!("{}\n", site_packages(&install::venv())?.display()))?;
+    Ok((venv, site))
+}
+
+/// Makes the wheel; returns its path.
 fn wheel() -> Result<PathBuf> {
     let folder = target_dir().join("wheels");
     shell::empty_dir(&folder)?;
     let mut build = program(install::python());
-    build.args(["-m", "maturin", "build", "--quiet", "--release", "--locked", "--out"]).arg(&folder);
-    build.arg("--manifest-path").arg(root().join("crates/orogen-py/Cargo.toml"));
+    build.args(["-m", "maturin", "build", "--quiet", "--profile", "wheel", "--locked", "--out"]).arg(&folder);
     sh(build.current_dir(root().join("python")))?;
     let entries = std::fs::read_dir(&folder).into_iter().flatten().flatten();
     let found = entries.map(|entry| entry.path()).find(|path| path.extension().is_some_and(|end| end == "whl"));
