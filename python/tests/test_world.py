@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+import signal
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -136,7 +137,7 @@ def test_files(hills: orogen.World, tmp_path: Path) -> None:
     deep = hills.export(tmp_path / "heights.png", size=64, bits=16)
     assert deep.read_bytes()[24] == 16
     hills.export(tmp_path / "light.png", "hillshade", size=64, azimuth=90.0)
-    hills.map(tmp_path / "map.svg", contours=100, size=64, title="Hills")
+    hills.map(tmp_path / "map.svg", contours=100, cell=240, title="Hills")
     assert "Hills" in (tmp_path / "map.svg").read_text()
     hills.render(tmp_path / "view.png", size=(160, 90), samples=1, cell=240)
     hills.blocks(tmp_path / "blocks.vox", size=32)
@@ -204,14 +205,15 @@ def test_progress_is_told_and_can_end_the_work() -> None:
 
 
 def test_a_signal_interrupts_the_work() -> None:
-    import signal
-
+    # A shell that starts the tests in the background has it ignored.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     world = orogen.World("alpine", seed=8, cache=False)
     timer = threading.Timer(0.3, lambda: signal.raise_signal(signal.SIGINT))
     timer.start()
     with pytest.raises(KeyboardInterrupt):
         world.window(cell=15)
     timer.join()
+    signal.signal(signal.SIGINT, before)
 
 
 def test_pictures_of_notebooks(hills: orogen.World) -> None:
