@@ -228,6 +228,23 @@ def test_objects_are_columns() -> None:
     assert (objects.x >= 0).all() and (objects.x < 4000).all()
 
 
+def test_statistics_and_fits_and_finer_land(tmp_path: Path) -> None:
+    land = orogen.World("hills", cache=False).window(cell=60)
+    place = orogen.World(land, cell=60.0, cache=False)
+    figures = place.analyze(tmp_path / "page.png")
+    assert figures["width"] == land.shape[1] and figures["figures"]["hack"]["real"]
+    assert (tmp_path / "page.png").read_bytes().startswith(b"\x89PNG")
+    finer = place.refined(30.0)
+    assert finer.cell == 30 and finer.window().shape == (2 * land.shape[0], 2 * land.shape[1])
+    assert np.array_equal(pickle.loads(pickle.dumps(finer)).window(size=64), finer.window(size=64))
+    with pytest.raises(orogen.errors.RequestError, match="refined"):
+        place.refined(45.0)
+    with pytest.raises(orogen.errors.RequestError, match="only heights"):
+        orogen.World("hills").refined(5.0)
+    world, report = orogen.fit(land[:128, :128], cell=60.0, tries=12, judges=1)
+    assert world.window(size=64).shape == (64, 64) and report["tried"] >= 12
+
+
 def test_presets_are_listed() -> None:
     assert orogen.presets()["alpine"]
     assert orogen.__version__

@@ -61,16 +61,20 @@ pub fn write(
         "build" => build,
         _ => return Err(internal(py, "unknown work")),
     };
-    let existing = match overwrite {
-        None => Existing::SameKind,
-        Some(true) => Existing::Replace,
-        Some(false) => Existing::Keep,
-    };
     let world = world.get();
-    let policy = OutputPolicy::new(existing).protecting(&world.inputs).protecting(options.files());
+    let policy = policy(overwrite).protecting(&world.inputs).protecting(options.files());
     let view = choice.view(py)?;
     let work = Work { world, path: &path, layer, title, view, policy, options, layer_options };
     run(py, progress, |progress| write(&work, progress))
+}
+
+/// The files that may be replaced: by default those of the same kind, otherwise any or none.
+pub fn policy(overwrite: Option<bool>) -> OutputPolicy {
+    OutputPolicy::new(match overwrite {
+        None => Existing::SameKind,
+        Some(true) => Existing::Replace,
+        Some(false) => Existing::Keep,
+    })
 }
 
 impl Work<'_> {
@@ -170,7 +174,7 @@ fn build(work: &Work, progress: &Progress) -> Result<Vec<String>> {
 }
 
 /// The choice whose name is the extension of a file.
-fn by_extension<T: Copy>(path: &Path, choices: &[(T, &str)], what: &str) -> Result<T> {
+pub fn by_extension<T: Copy>(path: &Path, choices: &[(T, &str)], what: &str) -> Result<T> {
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default();
     let found = choices.iter().find(|(_, name)| *name == extension).map(|(choice, _)| *choice);
     found.ok_or_else(|| {

@@ -35,5 +35,5 @@ mod _orogen {
     #[pymodule_export]
     use super::options::{declared, derived_layers};
     #[pymodule_export]
-    use super::world::{Points, World, cache_folder, memory_of, presets};
+    use super::world::{Points, World, cache_folder, fit, memory_of, presets};
 }

@@ -3,6 +3,7 @@
 use orogen::builder::BuildSpec;
 use orogen::export::derived::list;
 use orogen::export::registry;
+use orogen::fit::FitJob;
 use orogen::jobs::noise::NoiseJob;
 use orogen::jobs::{BlocksJob, MapJob, RenderJob};
 use orogen::options::{OptionSpec, Options, ValueKind};
@@ -23,6 +24,7 @@ pub fn of_work(work: &str) -> Vec<&'static OptionSpec> {
         "blocks" => BlocksJob::OPTIONS.iter().collect(),
         "tilemap" => TilemapJob::OPTIONS.iter().collect(),
         "build" => BuildSpec::OPTIONS.iter().collect(),
+        "fit" => FitJob::OPTIONS.iter().collect(),
         "noise" => NoiseJob::OPTIONS.iter().collect(),
         _ => Vec::new(),
     }

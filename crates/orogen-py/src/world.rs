@@ -6,6 +6,7 @@ use std::sync::Arc;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1};
 use orogen::export::derived::list;
 use orogen::export::layer_source::LayerSource;
+use orogen::fit::FitJob;
 use orogen::io::dem::PreparedDem;
 use orogen::io::dem::prepared::DEFAULT_MEMORY;
 use orogen::io::file;
@@ -13,6 +14,7 @@ use orogen::io::format::crs::Crs;
 use orogen::io::format::dem::Dem;
 use orogen::io::format::notes::SOFTWARE;
 use orogen::io::format::png::{self, Picture, Pixel};
+use orogen::jobs::AnalyzeJob;
 use orogen::options::Options;
 use orogen::output::map::Painter;
 use orogen::recipe::RecipeSource;
@@ -27,6 +29,7 @@ use pyo3::types::{PyBytes, PyDict};
 
 use crate::array::{Heights, array, grid};
 use crate::failure::{internal, raised, refused};
+use crate::jobs::{by_extension, policy};
 use crate::options::{of_keywords, of_work};
 use crate::run::run;
 
@@ -268,6 +271,53 @@ impl World {
         Ok(PyBytes::new(py, &bytes))
     }
 
+    /// The statistics of a layer over a window, as JSON; with `page`, a page of charts is written to this .png.
+    #[expect(clippy::too_many_arguments, reason = "the Python part gives them by name")]
+    fn analyze(
+        &self,
+        py: Python<'_>,
+        name: &str,
+        layer: &str,
+        part: Part,
+        page: Option<PathBuf>,
+        overwrite: Option<bool>,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<String> {
+        let window = window_of(part);
+        let mut job = AnalyzeJob::new(name, &Options::default()).with_place(self.is_place);
+        job.layer = layer.to_owned();
+        run(py, progress, |progress| {
+            let output = page.map(|page| {
+                by_extension(&page, &[((), "png")], "a page of charts")?;
+                policy(overwrite).protecting(&self.inputs).output(page)
+            });
+            let output = output.transpose()?;
+            let job = if output.is_some() { job.with_page(name) } else { job };
+            let analysis = job.run(&self.world, &window, progress)?;
+            if let Some((output, page)) = output.as_ref().zip(analysis.page.as_ref()) {
+                file::write_whole(output, |out| page.write_png(out, &[("Software", SOFTWARE)]))?;
+            }
+            Ok(analysis.to_json())
+        })
+    }
+
+    /// The same place at a smaller cell, with invented side valleys and slopes.
+    fn refined(&self, py: Python<'_>, cell: f64) -> PyResult<World> {
+        if !self.is_place {
+            return Err(refused(
+                py,
+                "only heights can be refined: a file of heights or an array; choose `cell` in `window`",
+            ));
+        }
+        run(py, None, |_| {
+            let mut recipe = self.world.recipe().clone();
+            recipe.refine_place(cell)?;
+            let world = Arc::new(self.session.open(recipe)?);
+            let (session, inputs) = (self.session.clone(), self.inputs.clone());
+            Ok(World { world, session, inputs, is_place: false, notes: Vec::new() })
+        })
+    }
+
     /// The objects over a window: the names of the entries, and for each object its entry, metres east and south,
     /// height, size and turn.
     #[expect(clippy::type_complexity, reason = "one array for each column")]
@@ -348,6 +398,24 @@ impl Points {
         let made = py.detach(|| self.sampler.window(&window));
         array(py, made.map_err(|error| raised(py, &error))?)
     }
+}
+
+/// A recipe with the statistics of heights, as TOML, and the comparison of both, as JSON.
+#[pyfunction]
+pub fn fit<'py>(
+    py: Python<'py>,
+    heights: Heights<'py>,
+    cell: f64,
+    name: &str,
+    options: &Bound<'py, PyDict>,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<(String, String)> {
+    let job = FitJob::new(&of_keywords(&of_work("fit"), options)?);
+    let heights = grid(&heights, cell)?;
+    run(py, progress, |progress| {
+        let found = job.run(&heights, name, &orogen::Options::default(), progress)?;
+        Ok((found.recipe.to_toml(), found.report.to_json()))
+    })
 }
 
 /// Name and description of each preset.

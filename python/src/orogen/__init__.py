@@ -14,7 +14,7 @@ Arrays have row 0 in the north and column 0 in the west; heights are float32 met
 
 from orogen import analysis, erosion, errors, hydrology, noise
 from orogen._orogen import __version__
-from orogen._world import Objects, Parameter, Sampler, Window, World, presets
+from orogen._world import Objects, Parameter, Sampler, Window, World, fit, presets
 
 __all__ = [
     "Objects",
@@ -26,6 +26,7 @@ __all__ = [
     "analysis",
     "erosion",
     "errors",
+    "fit",
     "hydrology",
     "noise",
     "presets",

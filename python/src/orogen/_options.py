@@ -391,3 +391,14 @@ class BuildOptions(TypedDict, total=False):
     """Samples along each side of a tile [default: 512; 513 for tiles that share their edges; 256 for an XYZ tree]"""
     tiles: str | None
     """Kind of the tiles in a folder"""
+
+
+class FitOptions(TypedDict, total=False):
+    """Keywords of `orogen.fit`."""
+
+    judges: int | None
+    """Number of worlds with other seeds that are compared with the place at the end [default: 2]"""
+    seed: int | None
+    """Seed of the search and of the resulting world [default: 1]"""
+    tries: int | None
+    """Number of parameter sets to try [default: 120]"""

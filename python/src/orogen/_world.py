@@ -25,13 +25,14 @@ if TYPE_CHECKING:
         BlocksOptions,
         BuildOptions,
         ExportOptions,
+        FitOptions,
         LayerOptions,
         MapOptions,
         RenderOptions,
         TilemapOptions,
     )
 
-__all__ = ["Objects", "Parameter", "Sampler", "Window", "World", "presets"]
+__all__ = ["Objects", "Parameter", "Sampler", "Window", "World", "fit", "presets"]
 
 PathLike: TypeAlias = "str | os.PathLike[str]"
 Size: TypeAlias = "int | tuple[int, int]"
@@ -417,6 +418,40 @@ class World:
             names, kinds, columns = self._native.objects(part, heard)
         return Objects(names, kinds, *columns)
 
+    def analyze(
+        self,
+        page: PathLike | None = None,
+        *,
+        layer: str = "height",
+        size: Size | None = None,
+        window: Part | None = None,
+        bounds: Bounds | None = None,
+        cell: float | None = None,
+        overwrite: bool | None = None,
+        progress: Progress = None,
+    ) -> dict[str, Any]:
+        """Statistics of the terrain next to those of real land, as `orogen analyze --json` prints them.
+
+        With `page`, a page of charts is written to this .png file; see `export` for existing files.
+        """
+        part = self.view(size=size, window=window, bounds=bounds, cell=cell)
+        with listener(progress) as heard:
+            file = None if page is None else os.fspath(page)
+            text = self._native.analyze(self._name, layer, part, file, overwrite, heard)
+        made: dict[str, Any] = json.loads(text)
+        return made
+
+    def refined(self, cell: float) -> World:
+        """Heights of a file or an array at a smaller cell: their rivers are kept, side valleys and slopes are added.
+
+        Layers: `height` and `flow` (drainage area).
+        """
+        made = World.__new__(World)
+        made._name = self._name
+        made._native = self._native.refined(cell)
+        made._arguments = self._arguments | {"refined": cell}
+        return made
+
     def to_xarray(
         self,
         layers: str | Sequence[str] = "height",
@@ -598,8 +633,30 @@ def presets() -> dict[str, str]:
     return dict(_orogen.presets())
 
 
+def fit(
+    heights: Samples,
+    *,
+    cell: float,
+    nodata: float | None = None,
+    progress: Progress = None,
+    **options: Unpack[FitOptions],
+) -> tuple[World, dict[str, Any]]:
+    """A world with the statistics of real heights, without their data, and its comparison with them.
+
+    `heights` are in metres, of at least 64 x 64 samples with some relief. See `orogen fit`.
+    """
+    data = _heights(heights, nodata)
+    if np.isnan(data).any():
+        raise RequestError("`heights` must have no missing samples; fill them, or choose a part without any")
+    with listener(progress) as heard:
+        recipe, report = _orogen.fit(data, cell, "heights", dict(options), heard)
+    return World(recipe), json.loads(report)
+
+
 def _restored(arguments: dict[str, Any]) -> World:
-    return World(arguments.pop("recipe"), **arguments)
+    own = {key: value for key, value in arguments.items() if key not in ("recipe", "refined")}
+    world = World(arguments["recipe"], **own)
+    return world.refined(arguments["refined"]) if "refined" in arguments else world
 
 
 def _of_layer(key: str) -> bool:
