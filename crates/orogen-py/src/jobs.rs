@@ -12,12 +12,13 @@ use orogen::options::Options;
 use orogen::tilemap::TilemapJob;
 use orogen::view::View;
 use orogen::world::HEIGHT;
-use orogen::{Error, ErrorKind, Progress, Result, Window};
+use orogen::{Progress, Result, Window};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::failure::internal;
 use crate::options::{of_keywords, of_work};
+use crate::output::{by_extension, policy};
 use crate::run::run;
 use crate::world::{Choice, World};
 
@@ -66,15 +67,6 @@ pub fn write(
     let view = choice.view(py)?;
     let work = Work { world, path: &path, layer, title, view, policy, options, layer_options };
     run(py, progress, |progress| write(&work, progress))
-}
-
-/// The files that may be replaced: by default those of the same kind, otherwise any or none.
-pub fn policy(overwrite: Option<bool>) -> OutputPolicy {
-    OutputPolicy::new(match overwrite {
-        None => Existing::SameKind,
-        Some(true) => Existing::Replace,
-        Some(false) => Existing::Keep,
-    })
 }
 
 impl Work<'_> {
@@ -171,15 +163,4 @@ fn build(work: &Work, progress: &Progress) -> Result<Vec<String>> {
     let start = if work.policy.existing() == Existing::Replace { Start::Force } else { Start::Resume };
     let report = build.run(start, progress)?;
     Ok(report.samples.check(&format!("the layer `{}`", spec.layers.join("`, `")))?.into_iter().collect())
-}
-
-/// The choice whose name is the extension of a file.
-pub fn by_extension<T: Copy>(path: &Path, choices: &[(T, &str)], what: &str) -> Result<T> {
-    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let found = choices.iter().find(|(_, name)| *name == extension).map(|(choice, _)| *choice);
-    found.ok_or_else(|| {
-        let names: Vec<String> = choices.iter().map(|(_, name)| format!(".{name}")).collect();
-        let message = format!("{what} has one of the extensions {}; not `{}`", names.join(", "), path.display());
-        Error::new(ErrorKind::Request, message)
-    })
 }

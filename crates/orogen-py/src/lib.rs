@@ -10,6 +10,7 @@ mod hydrology;
 mod jobs;
 mod noise;
 mod options;
+mod output;
 mod run;
 mod world;
 

@@ -29,8 +29,8 @@ use pyo3::types::{PyBytes, PyDict};
 
 use crate::array::{Heights, array, grid};
 use crate::failure::{internal, raised, refused};
-use crate::jobs::{by_extension, policy};
 use crate::options::{of_keywords, of_work};
+use crate::output::{by_extension, policy};
 use crate::run::run;
 
 /// Column and row of the first sample, samples per row, rows, and the cell in metres.

@@ -467,7 +467,7 @@ class World:
         In a world with a CRS, x and y are its coordinates, otherwise metres east and north of the north-west corner.
         `xarray.open_dataset(path, engine="orogen")` makes only what is read.
         """
-        from orogen._xarray import dataset
+        from orogen._dataset import dataset
 
         names = [layers] if isinstance(layers, str) else list(layers)
         found = self.view(size=size, window=window, bounds=bounds, cell=cell)

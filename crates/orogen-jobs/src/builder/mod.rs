@@ -18,6 +18,7 @@ mod blocks;
 mod cog;
 mod digest;
 mod folder;
+mod form_window;
 mod identity;
 mod job;
 #[doc(hidden)]

@@ -2,10 +2,8 @@
 
 use std::path::Path;
 
-use super::xyz;
 use crate::options::{Choice, OptionSpec, Options, ValueKind};
-use orogen_engine::view::View;
-use orogen_engine::world::{HEIGHT, World};
+use orogen_engine::world::HEIGHT;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_io::format::encoding::Encoding;
@@ -94,35 +92,6 @@ impl Form {
                 out.display()
             )),
         }
-    }
-
-    /// The window of a build: that of `view`, otherwise the whole world at its own cell; of an XYZ tree at the nearest
-    /// cell of a zoom level. Tiles that share their edges include the far edge of the world.
-    ///
-    /// # Errors
-    /// If a size is chosen for an XYZ tree, or the errors of [`View::window`].
-    pub fn window(self, world: &World, view: &View, options: &Options) -> Result<Window> {
-        let recipe = world.recipe();
-        if let (Form::Xyz(_), Some(_)) = (self, view.size) {
-            let message = "an XYZ tree has fixed cell sizes; leave out --size, or use --cell";
-            return Err(Error::new(ErrorKind::Request, message));
-        }
-        let tile = || options.whole("tile").map(|side| side as usize).or(self.usual_tile()).unwrap_or(1);
-        let cell = view.cell.unwrap_or_else(|| match self {
-            Form::Xyz(_) => xyz::cell_near(recipe.world.cell, tile(), recipe.georeference().as_ref()),
-            _ => recipe.world.cell,
-        });
-        if let Some(part) = view.part(recipe, cell)? {
-            return Ok(part);
-        }
-        let whole = match view.size {
-            Some(_) => view.window(world, |_| ())?,
-            None => world.full_window(cell)?,
-        };
-        Ok(match self {
-            Form::Tiles(_) => Window { width: whole.width + 1, height: whole.height + 1, ..whole },
-            _ => whole,
-        })
     }
 
     /// The default side of a tile in samples; `None` if it depends on the window. For tiles that share their edges it

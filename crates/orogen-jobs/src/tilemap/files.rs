@@ -28,9 +28,6 @@ const SUMMARY: &str = "tilemap.json";
 const LDTK: &str = "map.ldtk";
 const GODOT: &str = "map.tscn";
 
-/// Cells along the longer side of a map, unless a size is chosen.
-pub const SIDE: usize = 128;
-
 /// Memory for writing the files, in bytes.
 const ENCODERS: u64 = 12 << 20;
 

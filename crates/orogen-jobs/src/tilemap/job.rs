@@ -16,7 +16,6 @@ use orogen_io::records::MEMORY as RECORDS;
 
 use super::class_rows::ClassRows;
 use super::drawing::{Drawing, IN_MEMORY, Stores, seen, sides};
-use super::files::SIDE;
 use super::map::Tilemap;
 use super::map_objects::{has_objects, objects};
 use super::tileset::Tileset;
@@ -66,10 +65,14 @@ impl TilemapJob {
         TilemapJob { is_infinite, ..self }
     }
 
-    /// The samples of a world that a map has: [`SIDE`] along the longer side, if no part, cell or size is chosen.
+    /// Cells along the longer side of a map, unless a size is chosen.
+    #[doc(hidden)]
+    pub const SIDE: usize = 128;
+
+    /// The samples of a world that a map has: 128 along the longer side, if no part, cell or size is chosen.
     #[must_use]
     pub fn view(view: &View) -> View {
-        view.sized(SIDE)
+        view.sized(TilemapJob::SIDE)
     }
 
     /// Adds what the map needs to a recipe. [Classes](orogen_engine::recipe::class) that the recipe has get the numbers

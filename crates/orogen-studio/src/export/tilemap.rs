@@ -2,7 +2,6 @@
 
 use orogen::recipe::outputs::CLASS;
 use orogen::tilemap::TilemapJob;
-use orogen::tilemap::files::SIDE;
 use orogen::world::HEIGHT;
 use orogen::{Result, WorldSpec};
 
@@ -23,7 +22,7 @@ pub struct TilemapExport {
 
 impl Default for TilemapExport {
     fn default() -> TilemapExport {
-        TilemapExport { size: SIDE, options: Given::new() }
+        TilemapExport { size: TilemapJob::SIDE, options: Given::new() }
     }
 }
 
@@ -35,7 +34,7 @@ impl TilemapExport {
     /// Adds the options of `orogen tilemap`.
     pub fn words(&self, region: Region, world: &WorldSpec, line: &mut CommandLine) {
         match self.samples(region, world) {
-            Samples::Fitting(SIDE) => {}
+            Samples::Fitting(TilemapJob::SIDE) => {}
             samples => samples.sized(line),
         }
         given::words(TilemapJob::OPTIONS, &self.options, line);
