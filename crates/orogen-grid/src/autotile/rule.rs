@@ -22,9 +22,7 @@ impl Pattern {
         let rows: Vec<Vec<char>> =
             rows.iter().map(|row| row.as_ref().chars().filter(|at| *at != ' ').collect()).collect();
         if rows.len() != 3 || rows.iter().any(|row| row.len() != 3) {
-            return Err(
-                "must have three rows of three characters: # (the layer continues), . (it ends) or ? (any)".into()
-            );
+            return Err("needs three rows of three characters: # (the layer continues), . (it ends) or ? (any)".into());
         }
         if rows[1][1] != '#' {
             return Err(format!("has `{}` in its middle, which is the cell itself: write #", rows[1][1]));
