@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::failure::internal;
-use crate::options::{of_keywords, of_work};
+use crate::options::split;
 use crate::output::{by_extension, policy};
 use crate::run::run;
 use crate::world::{Choice, World};
@@ -36,7 +36,7 @@ struct Work<'a> {
 
 /// Does the work that `name` names and writes its files; returns warnings.
 #[pyfunction]
-#[pyo3(signature = (world, name, path, layer, title, choice, overwrite, options, layer_options, progress))]
+#[pyo3(signature = (world, name, path, layer, title, choice, overwrite, options, progress))]
 #[expect(clippy::too_many_arguments, reason = "the Python part gives them by name")]
 pub fn write(
     py: Python<'_>,
@@ -48,11 +48,9 @@ pub fn write(
     choice: Choice<'_>,
     overwrite: Option<bool>,
     options: &Bound<'_, PyDict>,
-    layer_options: &Bound<'_, PyDict>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Vec<String>> {
-    let options = of_keywords(&of_work(name), options)?;
-    let layer_options = of_keywords(&of_work("layer"), layer_options)?;
+    let [options, layer_options] = split(name, options)?;
     let write = match name {
         "export" => export,
         "map" => map,

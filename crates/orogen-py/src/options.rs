@@ -95,6 +95,23 @@ pub fn of_keywords(specs: &[&'static OptionSpec], keywords: &Bound<'_, PyDict>) 
     Options::of(specs.iter().copied(), given).map_err(|error| raised(py, &error))
 }
 
+/// The options of a kind of work, and those of the derived layer that it writes or draws.
+///
+/// # Errors
+/// Those of [`of_keywords`].
+pub fn split(work: &str, keywords: &Bound<'_, PyDict>) -> PyResult<[Options; 2]> {
+    let [own, of_layer] = [PyDict::new(keywords.py()), PyDict::new(keywords.py())];
+    let specs = of_work(work);
+    let layer_specs = if matches!(work, "export" | "map") { of_work("layer") } else { Vec::new() };
+    for (key, value) in keywords.iter() {
+        let name: String = key.extract::<String>()?.replace('_', "-");
+        let knows = |specs: &[&OptionSpec]| specs.iter().any(|spec| spec.name == name);
+        let to = if !knows(&specs) && knows(&layer_specs) { &of_layer } else { &own };
+        to.set_item(key, value)?;
+    }
+    Ok([of_keywords(&specs, &own)?, of_keywords(&layer_specs, &of_layer)?])
+}
+
 /// The text of a value, as a command line would have it; `None` if the option is not given.
 fn text(spec: &OptionSpec, value: &Bound<'_, PyAny>) -> PyResult<Option<String>> {
     if value.is_none() {

@@ -117,7 +117,6 @@ def write(
     choice: _Choice,
     overwrite: bool | None,
     options: dict[str, Any],
-    layer_options: dict[str, Any],
     progress: _Listener,
 ) -> list[str]: ...
 def presets() -> list[tuple[str, str]]: ...

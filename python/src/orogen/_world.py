@@ -583,12 +583,9 @@ class World:
         options: dict[str, Any],
         layer: str = "height",
     ) -> Path:
-        known = {name for name, *_ in _orogen.declared(work)} if work in ("export", "map") else None
-        own = {key: value for key, value in options.items() if known is None or key in known or not _of_layer(key)}
-        of_layer = {key: value for key, value in options.items() if key not in own}
         with listener(progress) as heard:
             found = _orogen.write(
-                self._native, work, os.fspath(path), layer, self._name, choice, overwrite, own, of_layer, heard
+                self._native, work, os.fspath(path), layer, self._name, choice, overwrite, options, heard
             )
         for warning in found:
             warnings.warn(warning, stacklevel=3)
@@ -611,8 +608,13 @@ class World:
         return self._native.picture(part)
 
     def plot(self, layer: str = "height", ax: Any = None, *, size: Size | None = 512, **view: Any) -> Any:
-        """Draws a layer with matplotlib, with coordinates in metres and a color bar. Returns the axes."""
+        """Draws a layer with matplotlib, with coordinates in metres and a color bar. Returns the axes.
+
+        Heights are shaded, with blue below the sea level; positive values over more than three orders of magnitude,
+        such as drainage areas, have a logarithmic scale.
+        """
         import matplotlib.pyplot as plt
+        from matplotlib import cm, colors
 
         size = None if "cell" in view or isinstance(view.get("window"), (Window, tuple)) else size
         found = self.view(size=size, **view)
@@ -621,7 +623,22 @@ class World:
         half = found.cell / 2
         east, south = found.east, found.south
         extent = (east[0] - half, east[-1] + half, south[-1] + half, south[0] - half)
-        image = ax.imshow(samples, extent=extent, cmap="terrain" if layer == "height" else "viridis")
+        low, high = float(np.nanmin(samples)), float(np.nanmax(samples))
+        if layer == "height":
+            # The first quarter of this color map is the sea.
+            sea = self.sea_level
+            shares = np.interp(np.linspace(low, high, 256), [min(low, sea - 1), sea, max(high, sea + 1)], [0, 0.25, 1])
+            shares = shares if low < sea else np.linspace(0.25, 1, 256)
+            hypsometric = colors.ListedColormap(plt.get_cmap("terrain")(shares))
+            norm = colors.Normalize(low, high)
+            shaded = colors.LightSource(315, 45).shade(
+                samples, hypsometric, norm=norm, blend_mode="soft", dx=found.cell, dy=found.cell
+            )
+            ax.imshow(shaded, extent=extent)
+            image = cm.ScalarMappable(norm, hypsometric)
+        else:
+            is_wide = low > 0 and high > 1000 * low
+            image = ax.imshow(samples, extent=extent, norm=colors.LogNorm(low, high) if is_wide else None)
         unit = self.layers.get(layer, "")
         ax.figure.colorbar(image, ax=ax, label=f"{layer} ({unit})" if unit else layer)
         ax.set(xlabel="east (m)", ylabel="south (m)", title=self._name)
@@ -657,10 +674,6 @@ def _restored(arguments: dict[str, Any]) -> World:
     own = {key: value for key, value in arguments.items() if key not in ("recipe", "refined")}
     world = World(arguments["recipe"], **own)
     return world.refined(arguments["refined"]) if "refined" in arguments else world
-
-
-def _of_layer(key: str) -> bool:
-    return any(key == name for name, *_ in _orogen.declared("layer"))
 
 
 def _choice(size: Size | None, window: Part | None, bounds: Bounds | None, cell: float | None) -> tuple[Any, ...]:
