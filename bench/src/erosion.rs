@@ -1,8 +1,7 @@
 //! Area `erosion`: hydrology and filters compared with richdem, fastscapelib and matplotlib, in memory, CPU time of one
 //! thread.
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 
 use cpu_time::ThreadTime;
 use orogen::grid::hydrology::steepest::Descent;
@@ -12,10 +11,12 @@ use serde_json::{Value, json};
 
 use crate::measure::median;
 use crate::options::Options;
+use crate::peer::Parts;
 use crate::world::figure::Figure;
-use crate::{filters, sizes};
+use crate::{filters, peer, sizes};
 
-const CELL: f64 = 60.0;
+/// Metres between the samples of [`ground`].
+pub const CELL: f64 = 60.0;
 
 /// The peers, each with the environment variable that has the path of its Python. `cargo xtask bench` installs the
 /// peers and sets the variables.
@@ -85,10 +86,12 @@ fn measured(options: &Options, folder: &Path) -> Result<Vec<Value>, String> {
     for case in CASES.iter().filter(|case| case.name.contains(&options.case)) {
         eprintln!("{} ...", case.name);
         let ground = ground(case.side)?;
-        let (peer, variable) = PEERS[case.peer];
+        let (name, variable) = PEERS[case.peer];
         let theirs = match std::env::var_os(variable) {
             Some(python) => {
-                Some(peer_seconds(Path::new(&python), peer, &ground, folder, options.repetitions, case.parts)?)
+                let file = peer::ground_file(folder, &ground)?.display().to_string();
+                let arguments = [file, CELL.to_string(), options.repetitions.to_string()];
+                Some(Parts::measure(Path::new(&python), "erosion.py", name, &arguments)?.seconds(case.parts)?)
             }
             None => None,
         };
@@ -100,7 +103,7 @@ fn measured(options: &Options, folder: &Path) -> Result<Vec<Value>, String> {
         rows.push(json!({
             "case": format!("{}, {side} x {side}", case.name, side = case.side),
             "ours": round(ours), "unit": "s of CPU",
-            "peer": theirs.map(|_| peer), "peer_value": theirs.map(round), "ratio": ratio.map(round),
+            "peer": theirs.map(|_| name), "peer_value": theirs.map(round), "ratio": ratio.map(round),
             "target": case.target, "met": case.target.map(|target| ratio.is_some_and(|ratio| ratio >= target)),
         }));
     }
@@ -110,7 +113,7 @@ fn measured(options: &Options, folder: &Path) -> Result<Vec<Value>, String> {
 }
 
 /// Rough terrain with depressions: ten octaves of fBm with a relief of 3000 m.
-fn ground(side: usize) -> Result<Grid, String> {
+pub fn ground(side: usize) -> Result<Grid, String> {
     let text = "orogen = 1\n[world]\nseed = 3\n[nodes.noise]\nop = \"fbm\"\nwavelength = 20000\noctaves = 10\n\
                 [nodes.ground]\nop = \"remap\"\nsource = \"noise\"\nto = [0, 3000]\n[outputs]\nheight = \"ground\"\n";
     let world = Recipe::parse(text, "ground").and_then(World::open).map_err(|e| e.to_string())?;
@@ -144,31 +147,4 @@ fn step(ground: &Grid) {
     let receivers = drainage::route_carving(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
     StreamPower::default().step(&mut heights, &receivers, &accumulate(&receivers), &Substrate::default(), 3e4);
     std::hint::black_box(heights);
-}
-
-/// The peer's median seconds for these parts.
-fn peer_seconds(
-    python: &Path,
-    peer: &str,
-    ground: &Grid,
-    folder: &Path,
-    repetitions: usize,
-    parts: &[&str],
-) -> Result<f64, String> {
-    let file = folder.join("ground.npy");
-    let written = std::fs::File::create(&file).and_then(|mut out| orogen::io::format::npy::write(&mut out, ground));
-    written.map_err(|e| format!("{}: {e}", file.display()))?;
-    let script = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("peers/erosion.py");
-    let mut command = Command::new(python);
-    command.arg(script).arg(peer).arg(&file).args([CELL.to_string(), repetitions.to_string()]);
-    let output = command.output().map_err(|e| format!("{}: {e}", python.display()))?;
-    let text = String::from_utf8_lossy(&output.stdout);
-    let last = text.lines().last().unwrap_or_default();
-    let times: Value = serde_json::from_str(last)
-        .map_err(|_| format!("{peer} measured nothing: {}", String::from_utf8_lossy(&output.stderr)))?;
-    let one = |part: &&str| -> Result<f64, String> {
-        let mut times: Vec<f64> = times[*part].as_array().into_iter().flatten().filter_map(Value::as_f64).collect();
-        if times.is_empty() { Err(format!("{peer} did not measure {part}")) } else { Ok(median(&mut times)) }
-    };
-    parts.iter().map(one).sum()
 }

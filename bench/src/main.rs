@@ -14,6 +14,8 @@ mod measure;
 mod noise;
 mod options;
 mod outputs;
+mod peer;
+mod python;
 mod resolution;
 mod rows;
 mod sizes;
@@ -37,6 +39,7 @@ const AREAS: &[Area] = &[
     ("outputs", outputs::run),
     ("tiles", tiles::run),
     ("studio", studio::run),
+    ("python", python::run),
     #[cfg(feature = "gpu")]
     ("gpu", gpu::run),
     ("resolution", resolution::run),

@@ -13,6 +13,9 @@ def main(native: str, site: str) -> None:
     version = manifest["workspace"]["package"]["version"]
     package = Path(site) / "orogen"
     left_out = shutil.ignore_patterns("*.so", "*.pyd", "__pycache__")
+    # An older one is replaced.
+    for old in Path(site).glob("orogen*"):
+        shutil.rmtree(old)
     shutil.copytree(root / "python/src/orogen", package, ignore=left_out)
     shutil.copy(native, package / "_orogen.abi3.so")
     info = Path(site) / f"orogen-{version}.dist-info"

@@ -31,6 +31,8 @@ Builds the benches at full optimization, measures one area (or all in turn) and 
                tiles     terrain classes, clean-up and tiles of a map of 4096 x 4096 cells, climate and biomes of 2048 x 2048 samples; chunks of
                          blocks; all cores, wall time
                studio    from a change of a parameter to the pictures of the studio, without the drawing of the window; all cores, wall time
+               python    windows, hydrology, analysis and noise from the Python package compared with the same calls in Rust and with richdem, fastscapelib,
+                         pysheds, xarray-spatial, WhiteboxTools, noise and opensimplex (installed with pip, as above), CPU time
                gpu       only if it is named: terrain and pictures on the first graphics card, beside a copy within its memory and beside the
                          processor, wall time; a software adapter has no targets
   --json FILE  also write the rows as JSON; needs an AREA
@@ -62,7 +64,10 @@ How to read the table: docs/benchmarks.md.
 ";
 
 /// The areas of the bench program.
-const AREAS: &[&str] = &["noise", "erosion", "generate", "world", "outputs", "tiles", "studio"];
+const AREAS: &[&str] = &["noise", "erosion", "generate", "world", "outputs", "tiles", "studio", PYTHON];
+
+/// An area that needs the Python package.
+const PYTHON: &str = "python";
 
 /// An area that builds the libraries of graphics drivers, so it is measured only if it is named.
 const GPU: &str = "gpu";
@@ -108,6 +113,10 @@ pub fn run(args: &[String]) -> Result {
         let mut command =
             shell::cargo(&format!("run --quiet --profile bench --package orogen-bench --features {features} --"));
         command.envs(peers::installed(area));
+        if area == PYTHON {
+            // CPU time is that of the process.
+            command.envs([peers::package()?]).env("RAYON_NUM_THREADS", "1");
+        }
         let measured = shell::capture(command.arg(area).args(&options.passed).env("OROGEN_BIN", &program))?;
         let report = report::Report::read(&measured)?;
         println!("{}", report.heading());

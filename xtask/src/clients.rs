@@ -10,7 +10,7 @@ mod install;
 mod neon;
 mod passed;
 mod presets;
-mod python;
+pub mod python;
 mod studio;
 mod wasm;
 

@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
-use crate::shell;
+use crate::failure::{Failure, Result};
+use crate::{clients, shell};
 
-/// A peer: its area, the environment variable in which the bench program looks for its Python, the packages, and the
+/// A peer: its areas, the environment variable in which the bench program looks for its Python, the packages, and the
 /// supported Pythons.
 struct Peer {
-    area: &'static str,
+    areas: &'static [&'static str],
     variable: &'static str,
     name: &'static str,
     packages: &'static [&'static str],
@@ -17,54 +18,107 @@ struct Peer {
 const PEERS: &[Peer] = &[
     // Its last release on PyPI is source code that does not compile with newer Pythons.
     Peer {
-        area: "erosion",
+        areas: &["erosion", "python"],
         variable: "OROGEN_RICHDEM",
         name: "richdem",
         packages: &["numpy<2", "richdem==0.3.4"],
         pythons: &["python3.10", "python3.9", "python3.8"],
     },
     Peer {
-        area: "erosion",
+        areas: &["erosion", "python"],
         variable: "OROGEN_FASTSCAPELIB",
         name: "fastscapelib",
         packages: &["numpy", "fastscapelib==0.3.0"],
         pythons: &["python3", "python3.12", "python3.11", "python3.10"],
     },
     Peer {
-        area: "erosion",
+        areas: &["erosion"],
         variable: "OROGEN_MATPLOTLIB",
         name: "matplotlib",
         packages: &["numpy", "matplotlib==3.10.7"],
         pythons: &["python3", "python3.13", "python3.12", "python3.11", "python3.10"],
     },
     Peer {
-        area: "outputs",
+        areas: &["outputs"],
         variable: "OROGEN_CONTOURPY",
         name: "contourpy",
         packages: &["numpy", "contourpy==1.3.3"],
         pythons: &["python3", "python3.13", "python3.12", "python3.11"],
     },
     Peer {
-        area: "outputs",
+        areas: &["outputs"],
         variable: "OROGEN_PYDELATIN",
         name: "pydelatin",
         packages: &["numpy", "pydelatin==0.4.0"],
         pythons: &["python3", "python3.13", "python3.12", "python3.11"],
     },
     Peer {
-        area: "outputs",
+        areas: &["outputs"],
         variable: "OROGEN_OPENEXR",
         name: "OpenEXR",
         packages: &["numpy", "OpenEXR==3.5.3"],
         pythons: &["python3", "python3.13", "python3.12", "python3.11"],
     },
+    Peer {
+        areas: &["python"],
+        variable: "OROGEN_PYSHEDS",
+        name: "pysheds",
+        packages: &["numpy", "pysheds==0.5"],
+        pythons: PYTHONS,
+    },
+    Peer {
+        areas: &["python"],
+        variable: "OROGEN_XRSPATIAL",
+        name: "xrspatial",
+        packages: &["numpy", "xarray-spatial==0.5.3"],
+        pythons: PYTHONS,
+    },
+    Peer {
+        areas: &["python"],
+        variable: "OROGEN_WHITEBOX",
+        name: "whitebox_workflows",
+        packages: &["numpy", "whitebox-workflows==2.0.6"],
+        pythons: PYTHONS,
+    },
+    Peer {
+        areas: &["python"],
+        variable: "OROGEN_NOISE",
+        name: "noise",
+        packages: &["numpy", "noise==1.2.2"],
+        pythons: PYTHONS,
+    },
+    Peer {
+        areas: &["python"],
+        variable: "OROGEN_OPENSIMPLEX",
+        name: "opensimplex",
+        packages: &["numpy", "opensimplex==0.4.5.1"],
+        pythons: PYTHONS,
+    },
 ];
+
+/// The newest Pythons.
+const PYTHONS: &[&str] = &["python3", "python3.13", "python3.12", "python3.11"];
+
+/// The Python in which our own package is measured.
+const OURS: Peer =
+    Peer { areas: &["python"], variable: "OROGEN_PYTHON", name: "numpy", packages: &["numpy"], pythons: PYTHONS };
 
 /// The Pythons of an area's peers that can be installed, each with its variable; a variable that is set is used
 /// unchanged. Peers that cannot be installed are listed on standard error.
 pub fn installed(area: &str) -> Vec<(&'static str, PathBuf)> {
-    let peers = PEERS.iter().filter(|peer| peer.area == area);
+    let peers = PEERS.iter().filter(|peer| peer.areas.contains(&area));
     peers.filter_map(|peer| Some((peer.variable, install(peer)?))).collect()
+}
+
+/// Installs our own package from the release build; returns its Python with its variable.
+pub fn package() -> Result<(&'static str, PathBuf)> {
+    if let Some(python) = std::env::var_os(OURS.variable) {
+        return Ok((OURS.variable, python.into()));
+    }
+    let python = install(&OURS).ok_or_else(|| Failure::new("the Python package cannot be measured without NumPy"))?;
+    shell::run(&mut shell::cargo("build --quiet --release --package orogen-py"))?;
+    clients::python::lay_out(&python, &clients::python::site_packages(&python)?)?;
+    Ok((OURS.variable, python))
 }
 
 fn install(peer: &Peer) -> Option<PathBuf> {

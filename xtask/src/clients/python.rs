@@ -10,14 +10,15 @@ use crate::shell::{self, program, root, run as sh, target_dir};
 /// Tests the package with the native part of the release build, laid out as in the wheel.
 pub fn check() -> Result {
     let (venv, site) = environment("python")?;
-    let native = target_dir().join("release").join(format!(
-        "{}_orogen{}",
-        std::env::consts::DLL_PREFIX,
-        std::env::consts::DLL_SUFFIX
-    ));
-    let mut lay_out = program(install::python());
-    sh(lay_out.arg(root().join("xtask/clients/install_python.py")).arg(native).arg(&site))?;
+    lay_out(&install::python(), &site)?;
     test(&venv, &site)
+}
+
+/// Lays the package out in a folder of packages, with the native part of the release build.
+pub fn lay_out(python: &Path, site: &Path) -> Result {
+    let [before, after] = [std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX];
+    let native = target_dir().join("release").join(format!("{before}_orogen{after}"));
+    sh(program(python).arg(root().join("xtask/clients/install_python.py")).arg(native).arg(site))
 }
 
 /// Tests the wheel that maturin makes.
@@ -58,8 +59,9 @@ fn environment(name: &str) -> Result<(PathBuf, PathBuf)> {
     let venv = super::folder().join("work").join(name);
     shell::empty_dir(&venv)?;
     sh(program(install::python()).args(["-m", "venv", "--without-pip"]).arg(&venv))?;
-    let site = site_packages(&venv)?;
-    shell::write(&site.join("clients.pth"), &format!("{}\n", site_packages(&install::venv())?.display()))?;
+    let site = site_packages(&venv.join("bin/python"))?;
+    let others = site_packages(&install::python())?;
+    shell::write(&site.join("clients.pth"), &format!("{}\n", others.display()))?;
     Ok((venv, site))
 }
 
@@ -75,9 +77,9 @@ fn wheel() -> Result<PathBuf> {
     found.ok_or_else(|| Failure::new("maturin has made no wheel"))
 }
 
-/// The folder of an environment's packages.
-fn site_packages(venv: &Path) -> Result<PathBuf> {
+/// The folder of a Python's packages.
+pub fn site_packages(python: &Path) -> Result<PathBuf> {
     let code = "import sysconfig; print(sysconfig.get_path('purelib'))";
-    let path = shell::capture(program(venv.join("bin/python")).args(["-c", code]))?;
+    let path = shell::capture(program(python).args(["-c", code]))?;
     Ok(PathBuf::from(path.trim()))
 }
