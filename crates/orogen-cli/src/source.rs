@@ -68,13 +68,27 @@ impl Source {
     pub fn read(&self, budget: &Budget, arguments: &Arguments) -> Result<Recipe, Failure> {
         let set = arguments.values();
         match self {
-            Source::Named(source) => {
-                let note = |note: &String| tell(self.dem().unwrap_or(Path::new(STDIN)), note);
-                Ok(source.read(&set, budget.left().unwrap_or(DEFAULT_MEMORY), note)?)
-            }
+            Source::Named(source) => Ok(source.read(&set, left(budget), |note| self.tell(note))?),
             Source::Stdin => piped(&set),
         }
     }
+
+    /// [`Source::read`], except that the heights of a large file are read when windows of them are requested.
+    pub fn open(&self, budget: &Budget, arguments: &Arguments) -> Result<Recipe, Failure> {
+        match self {
+            Source::Named(source) => Ok(source.open(&arguments.values(), left(budget), |note| self.tell(note))?),
+            Source::Stdin => self.read(budget, arguments),
+        }
+    }
+
+    fn tell(&self, note: &str) {
+        tell(self.dem().unwrap_or(Path::new(STDIN)), note);
+    }
+}
+
+/// Memory for the heights of a file, in bytes.
+fn left(budget: &Budget) -> u64 {
+    budget.left().unwrap_or(DEFAULT_MEMORY)
 }
 
 /// Prints a note about a file of heights.

@@ -50,7 +50,7 @@ pub struct View {
     /// Position of the world's north-west corner in the CRS: easting and northing, or longitude and latitude
     #[arg(long, value_name = "E,N", value_parser = place, allow_hyphen_values = true)]
     pub origin: Option<[f64; 2]>,
-    /// Whether only the part of a file of heights that the window needs is read.
+    /// Whether the window of a file of heights and its surroundings are read before the world is opened.
     #[arg(skip)]
     pub reads_part: bool,
 }
@@ -109,7 +109,8 @@ impl View {
             let reads_part = out.as_deref() != Some(Path::new(DASH));
             let view = View { seed, reads_part, ..self.clone() };
             match work(view.clone(), out.clone()) {
-                // Some work reads further than the surroundings of its window.
+                // Some work reads further than the surroundings of its window. It opens the file instead, and the
+                // engine reads what it needs.
                 Err(Failure::Engine(error)) if error.kind() == ErrorKind::Part && reads_part => {
                     work(View { reads_part: false, ..view }, out)
                 }
@@ -147,7 +148,11 @@ impl View {
             };
             return Ok(part.map_or(outline, |part| self.placed(of_dem(path, part))));
         }
-        Ok(self.placed(source.read(budget, &self.arguments)?))
+        let recipe = match self.has_part() {
+            true => source.open(budget, &self.arguments),
+            false => source.read(budget, &self.arguments),
+        };
+        Ok(self.placed(recipe?))
     }
 
     /// Applies these options to the world of a recipe.

@@ -154,10 +154,10 @@ fn tilemap(work: &Work, progress: &Progress) -> Result<Vec<String>> {
 /// A world of any size in tiles, or as one large file, continued where an earlier build stopped.
 fn build(work: &Work, progress: &Progress) -> Result<Vec<String>> {
     let form = Form::chosen(work.path, &work.options)?;
-    let world = &work.world.world;
-    let window = form.window(world, &work.view, &work.options)?;
+    let world = work.world.with_whole_files()?;
+    let window = form.window(&world, &work.view, &work.options)?;
     let spec = BuildSpec::new(form, window).with_options(&work.options);
-    let build = Build::new(world, &spec, &work.policy.output(work.path)?)?;
+    let build = Build::new(&world, &spec, &work.policy.output(work.path)?)?;
     let start = if work.policy.existing() == Existing::Replace { Start::Force } else { Start::Resume };
     let report = build.run(start, progress)?;
     Ok(report.samples.check(&format!("the layer `{}`", spec.layers.join("`, `")))?.into_iter().collect())

@@ -97,7 +97,7 @@ impl World {
                         inputs.push(path.clone());
                     }
                     is_place = matches!(source, RecipeSource::Dem(_));
-                    source.read(&parameters, allowed, |note| notes.push(note.clone()))?
+                    source.open(&parameters, allowed, |note| notes.push(note.clone()))?
                 }
             };
             recipe.world.seed = seed.unwrap_or(recipe.world.seed);
@@ -354,6 +354,15 @@ impl World {
         let mut recipe = self.world.recipe().clone();
         prepare(&mut recipe)?;
         self.session.open(recipe)
+    }
+
+    /// The world with all heights of its files, which identify a build.
+    pub(crate) fn with_whole_files(&self) -> Result<Arc<orogen::World>> {
+        let allowed = self.world.memory_limit().unwrap_or(DEFAULT_MEMORY);
+        match self.world.recipe().with_whole_files(allowed)? {
+            Some(recipe) => Ok(Arc::new(self.session.open(recipe)?)),
+            None => Ok(Arc::clone(&self.world)),
+        }
     }
 
     /// The channels of a layer that is derived from the heights.

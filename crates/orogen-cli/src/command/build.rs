@@ -7,6 +7,7 @@ use orogen::Window;
 use orogen::builder::run::Start;
 use orogen::builder::{Build, BuildSpec, Form, Report};
 use orogen::grid::words::{self, bytes, count, number};
+use orogen::io::dem::prepared::DEFAULT_MEMORY;
 
 use crate::bar::Bar;
 use crate::declared::OptionsOf;
@@ -55,7 +56,10 @@ fn build(args: &Args) -> Result<(), Failure> {
     let form = Form::chosen(&args.out, &options)?;
     let Opened { recipe, budget, policy, .. } = args.run.read(&args.recipe, &args.samples.view)?;
     let output = policy.output(&args.out)?;
-    let world = args.run.limits.open(recipe, &budget)?;
+    let mut world = args.run.limits.open(recipe, &budget)?;
+    if let Some(recipe) = world.recipe().with_whole_files(budget.left().unwrap_or(DEFAULT_MEMORY))? {
+        world = args.run.limits.open(recipe, &budget)?;
+    }
     let view = args.samples.view.samples(args.samples.size)?;
     let spec = BuildSpec::new(form, form.window(&world, &view, &options)?).with_options(&options);
     let build = Build::new(&world, &spec, &output)?;

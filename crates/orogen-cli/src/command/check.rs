@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use orogen::grid::error::Diagnostic;
 use orogen::grid::words::count;
+use orogen::io::dem::prepared::DEFAULT_MEMORY;
 use orogen::{Options, World};
 use serde_json::{Value, json};
 
@@ -59,7 +60,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 fn check(recipe: &Path, args: &Args) -> Result<World, Failure> {
     let memory = memory::budget(args.memory, memory::cores());
     let recipe = Source::find(recipe)?.read(&memory, &args.arguments)?;
+    let allowed = memory.left().unwrap_or(DEFAULT_MEMORY);
     let world = World::with_options(recipe, Options { memory, ..Options::default() })?;
+    world.recipe().with_whole_files(allowed)?;
     let cell = world.recipe().world.cell;
     let window = orogen::Window::new(1, 1, cell);
     let layers: Vec<&str> = world.recipe().outputs().collect();

@@ -1,7 +1,7 @@
 //! Memory of a plan, known before the first sample.
 
-use super::levels;
 use super::steps::{Plan, Solve, Step, grid_bytes, wanted};
+use super::{levels, parts};
 use crate::recipe::document::Recipe;
 use orogen_io::pages;
 use orogen_ops::ids::{GridId, Id, IndexVec, StepId};
@@ -81,13 +81,14 @@ fn scratch(solve: &Solve) -> u64 {
     if solve.on_disk { solve.scratch_on_disk } else { solve.scratch }
 }
 
-/// Maximum memory of a plan on `threads` threads, in bytes: its own size, the files that the recipe names, grids,
-/// registers, solutions, and the computation of solvers' sources.
+/// Maximum memory of a plan on `threads` threads, in bytes: its own size, the files that the recipe names, the windows
+/// that are read of large files, grids, registers, solutions, and the computation of solvers' sources.
 pub fn needed(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
     let solving = plan.solves.iter().map(|solve| solve.tile.saturating_add(scratch(solve))).max().unwrap_or(0);
     let kept = plan.solves.iter().fold(0u64, |sum, solve| sum.saturating_add(rasters(solve)));
     let own = plan.steps.iter().map(own_bytes).sum::<u64>();
-    own.saturating_add(recipe.held()).saturating_add(kept).saturating_add(steps(plan, recipe, threads).max(solving))
+    let files = recipe.held().saturating_add(parts::memory(plan, recipe));
+    own.saturating_add(files).saturating_add(kept).saturating_add(steps(plan, recipe, threads).max(solving))
 }
 
 /// Size of a step as a value, in bytes.

@@ -13,6 +13,7 @@ use crate::recipe::surface::list::SURFACES;
 use crate::recipe::world_spec;
 pub use crate::recipe::world_spec::WorldSpec;
 use orogen_grid::error::{Diagnostic, Error, ErrorKind, Result};
+use orogen_io::dem::dem_file::DemFile;
 use orogen_io::dem::file_ref::{FileKind, FileRef};
 use orogen_io::dem::open;
 use orogen_io::dem::prepared::PreparedDem;
@@ -305,14 +306,37 @@ impl Recipe {
     }
 
     /// Reads the files that its nodes name. Each is read only once; their heights together take at most `allowed`
-    /// bytes.
+    /// bytes. Of large files of heights, requests read the windows that they need, unless a node reads the whole world
+    /// or its results are stored: then all heights are needed, for the results or for their keys.
     ///
     /// # Errors
     /// If one cannot be read: the message contains the node, and the location if the recipe was read from a text.
     pub fn load(&mut self, allowed: u64) -> Result<()> {
+        let is_stored = |named: &NamedNode| matches!(named.node.op(), Op::Solver(_) | Op::Levelled(_));
+        let reads_windows = !self.nodes.iter().any(is_stored);
+        self.load_files(allowed, reads_windows)
+    }
+
+    /// The recipe with all heights of its files, for work that checks them or is identified by them; `None` if it has
+    /// them already.
+    ///
+    /// # Errors
+    /// The errors of [`Recipe::load`].
+    #[doc(hidden)]
+    pub fn with_whole_files(&self, allowed: u64) -> Result<Option<Recipe>> {
+        if self.dem_files().is_empty() {
+            return Ok(None);
+        }
+        let mut recipe = self.clone();
+        recipe.load_files(allowed, false)?;
+        Ok(Some(recipe))
+    }
+
+    fn load_files(&mut self, allowed: u64, reads_windows: bool) -> Result<()> {
         // One file may be heights for one node and a picture for another.
         let mut known: BTreeMap<(PathBuf, FileKind, Option<u32>), Arc<PreparedDem>> = BTreeMap::new();
         let mut drawings: BTreeMap<(PathBuf, FileKind), Arc<Drawing>> = BTreeMap::new();
+        let mut files: BTreeMap<(PathBuf, Option<u32>), Option<Arc<DemFile>>> = BTreeMap::new();
         self.held = 0;
         for NamedNode { name, node, .. } in &mut self.nodes {
             let band = match node {
@@ -326,7 +350,8 @@ impl Recipe {
                 let location = file.location().cloned();
                 let in_node = |error: Error| {
                     let message = format!("node `{name}`: {error}");
-                    Error::from_diagnostics(ErrorKind::File, vec![Diagnostic::new(message).with_place(location)])
+                    let diagnostic = Diagnostic::new(message).with_place(location.clone());
+                    Error::from_diagnostics(ErrorKind::File, vec![diagnostic])
                 };
                 let path = (file.path(), file.kind(), band);
                 if let FileKind::Drawing(kind) = path.1 {
@@ -340,6 +365,23 @@ impl Recipe {
                     }
                     file.hold_drawing(drawing);
                     continue;
+                }
+                let is_read = file.ground().is_some() && file.dem_file().is_none();
+                if path.1 == FileKind::Heights && reads_windows && !is_read {
+                    let key = (path.0.clone(), band);
+                    let found = match (file.dem_file(), files.get(&key)) {
+                        (Some(own), _) => Some(Arc::clone(own)),
+                        (None, Some(known)) => known.clone(),
+                        (None, None) => DemFile::open(&path.0, band, left).map_err(in_node)?.map(Arc::new),
+                    };
+                    files.insert(key, found.clone());
+                    if let Some(found) = found {
+                        file.hold_file(found);
+                        continue;
+                    }
+                }
+                if let Some(own) = file.dem_file().cloned() {
+                    file.hold(own.read(None, left).map_err(in_node)?);
                 }
                 let read = || match path.1 {
                     FileKind::Picture => PreparedDem::picture(&path.0, left),
@@ -435,6 +477,19 @@ impl Recipe {
         recipe
     }
 
+    /// [`Recipe::from_dem`] for a file from which windows are read when they are requested.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn from_dem_file(path: &Path, file: &Arc<DemFile>) -> Recipe {
+        let mut recipe = Recipe::from_dem(path, file.place());
+        recipe.change(|node| {
+            if let Node::Dem(dem) = node {
+                dem.path.hold_file(Arc::clone(file));
+            }
+        });
+        recipe
+    }
+
     /// Whether its heights are the unchanged heights of a file.
     #[doc(hidden)]
     #[must_use]
@@ -442,10 +497,25 @@ impl Recipe {
         matches!(self.nodes.as_slice(), [only] if matches!(only.node, Node::Dem(_)))
     }
 
-    /// Memory of its files after they are read, in bytes.
+    /// Memory of its files after they are read, in bytes, without windows that requests hold.
     #[must_use]
     pub fn held(&self) -> u64 {
-        self.held
+        let files = self.dem_files();
+        files.iter().fold(self.held, |sum, file| sum.saturating_add(file.kept()))
+    }
+
+    /// The files from which windows are read when they are requested, each once.
+    fn dem_files(&self) -> Vec<&Arc<DemFile>> {
+        let mut files: Vec<&Arc<DemFile>> = Vec::new();
+        for named in &self.nodes {
+            if let Node::Dem(dem) = &named.node
+                && let Some(file) = dem.path.dem_file()
+                && !files.iter().any(|known| Arc::ptr_eq(known, file))
+            {
+                files.push(file);
+            }
+        }
+        files
     }
 
     /// The names of its outputs.

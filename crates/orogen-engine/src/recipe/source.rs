@@ -7,6 +7,7 @@ use super::document::Recipe;
 use super::presets::{self, Preset};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::nearest;
+use orogen_io::dem::dem_file::DemFile;
 use orogen_io::dem::{PreparedDem, open};
 use orogen_io::format::content;
 use orogen_io::format::foreign::foreign;
@@ -41,6 +42,22 @@ impl RecipeSource {
             }
             _ => Ok(RecipeSource::File(argument.to_path_buf())),
         }
+    }
+
+    /// [`RecipeSource::read`], except that the heights of a large file are read when windows of them are requested.
+    ///
+    /// # Errors
+    /// The errors of [`RecipeSource::read`].
+    #[doc(hidden)]
+    pub fn open(&self, set: &[(String, f64)], memory: u64, note: impl FnMut(&String)) -> Result<Recipe> {
+        if let RecipeSource::Dem(path) = self
+            && set.is_empty()
+            && let Some(file) = DemFile::open(path, None, memory)?
+        {
+            file.place().notes.iter().for_each(note);
+            return Ok(Recipe::from_dem_file(path, &Arc::new(file)));
+        }
+        self.read(set, memory, note)
     }
 
     /// Reads the recipe with these values of its parameters. A file of heights takes at most `memory` bytes; `note`

@@ -22,5 +22,5 @@ use std::path::Path;
 /// If there is no such preset or file (the message suggests the closest name), the file cannot be read, or the recipe
 /// is not valid.
 pub fn open(source: impl AsRef<Path>) -> Result<World> {
-    World::open(RecipeSource::find(source.as_ref())?.read(&[], DEFAULT_MEMORY, |_| {})?)
+    World::open(RecipeSource::find(source.as_ref())?.open(&[], DEFAULT_MEMORY, |_| {})?)
 }

@@ -5,16 +5,25 @@ use crate::engine::inline::PreparedProgram;
 use crate::engine::preview::Preview;
 use crate::engine::run::Engine;
 use crate::plan::key::Key;
+use crate::plan::parts;
 use crate::plan::steps::Plan;
 use crate::recipe::graph::Link;
 use crate::recipe::outputs::HEIGHT;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
+use orogen_io::dem::prepared::{DEFAULT_MEMORY, PreparedDem};
 use orogen_ops::budget::Reservation;
 use orogen_ops::ids::{IndexVec, NodeId};
 use orogen_ops::op::StepObserver;
 use std::sync::{Arc, PoisonError};
+
+/// What a running request holds.
+pub(super) struct Running {
+    _memory: Reservation,
+    /// The windows of files that it reads.
+    _heights: Vec<Arc<PreparedDem>>,
+}
 
 impl World {
     /// Runs a plan: returns one grid per layer, in the requested order.
@@ -155,12 +164,19 @@ impl World {
         self.session.install(work)
     }
 
-    /// Reserves the memory that a plan needs, and drops other solutions to make room. Rejects a plan of another recipe.
-    pub(super) fn admit(&self, plan: &Plan, progress: &Progress) -> Result<Reservation> {
-        let running = self.session.budget.admit(self.memory_of(plan)?, progress)?;
+    /// Reserves the memory that a plan needs, drops other solutions to make room, and reads the windows of large files
+    /// that it needs. Rejects a plan of another recipe.
+    pub(super) fn admit(&self, plan: &Plan, progress: &Progress) -> Result<Running> {
+        let needed = self.memory_of(plan)?;
+        let memory = self.session.budget.admit(needed, progress)?;
         let keys: IndexVec<NodeId, Key> = plan.solves.iter().map(|solve| solve.key).collect();
         self.session.make_room(&keys);
-        Ok(running)
+        let recipe = &self.resolved.recipe;
+        // Heights that fill large holes are not known before they are read; they may take what the rest of the plan
+        // leaves of the limit.
+        let rest = needed.saturating_sub(parts::memory(plan, recipe));
+        let heights = parts::read(plan, recipe, self.limit_beside(rest).unwrap_or(DEFAULT_MEMORY))?;
+        Ok(Running { _memory: memory, _heights: heights })
     }
 
     /// Checks that there is memory for a window's samples.

@@ -3,17 +3,21 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::dem_file::DemFile;
 use super::prepared::PreparedDem;
 use crate::format::drawing::Drawing;
 use crate::format::outlines::DrawingKind;
 use orogen_grid::error::Location;
 
-/// A file of heights, or of another kind, named by a recipe. Its content is read once, when the world is opened.
+/// A file of heights, or of another kind, named by a recipe. Its content is read once, when the world is opened; from a
+/// large file of heights, windows are read when they are requested.
 #[derive(Debug, Clone, Default)]
 pub struct FileRef {
     path: String,
     folder: Option<PathBuf>,
     ground: Option<Arc<PreparedDem>>,
+    /// The file from which windows are read; then `ground` has no heights.
+    dem_file: Option<Arc<DemFile>>,
     drawing: Option<Arc<Drawing>>,
     kind: FileKind,
     /// The location in the recipe's text where the file is named.
@@ -150,6 +154,21 @@ impl FileRef {
     /// Sets the heights or the picture.
     pub fn hold(&mut self, ground: Arc<PreparedDem>) {
         self.ground = Some(ground);
+        self.dem_file = None;
+    }
+
+    /// The file from which windows are read, if its heights were not read.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn dem_file(&self) -> Option<&Arc<DemFile>> {
+        self.dem_file.as_ref()
+    }
+
+    /// Sets the file from which windows are read.
+    #[doc(hidden)]
+    pub fn hold_file(&mut self, file: Arc<DemFile>) {
+        self.ground = Some(Arc::clone(file.place()));
+        self.dem_file = Some(file);
     }
 
     /// The lines or areas, if they were read.

@@ -1,6 +1,8 @@
 //! Real terrain prepared for the engine: read from any format, resampled to square cells in metres, with holes filled.
 
 #[doc(hidden)]
+pub mod dem_file;
+#[doc(hidden)]
 pub mod file_ref;
 #[doc(hidden)]
 pub mod latitude;

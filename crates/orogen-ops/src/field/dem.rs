@@ -3,10 +3,11 @@
 use crate::layer::LayerKind;
 use crate::lower::Lowering;
 use crate::op::{Field, Inputs, WorldParams};
-use orogen_grid::error::Result;
+use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_grid::resample::{self, NOWHERE};
 use orogen_io::dem::file_ref::FileRef;
+use orogen_io::dem::prepared::PreparedDem;
 use orogen_io::format::dem::Georeference;
 use orogen_noise::Points;
 use orogen_noise::shader::function::Shader;
@@ -30,7 +31,8 @@ op! {
     /// samples (.r16, .r32). Files of the last five kinds lack metadata: it is read from NAME.json or NAME.toml beside
     /// the file (`width`, `height`, `cell`, `low`, `high`, `byte_order`, `nodata`), from a world file and from a .prj.
     /// Stored solutions are reused as long as the content of the file is the same; its name does not matter. The
-    /// heights are kept in memory.
+    /// heights are kept in memory. From a large GeoTIFF or NetCDF file, requests of windows read only the blocks that
+    /// they need, unless the recipe has a node that reads the whole world.
     ///
     /// The file's first sample, its north-west corner, is placed at `at`. Between samples the heights are interpolated
     /// by a cubic (Catmull and Rom 1974). Geographic coordinates are converted to metres with the length of a degree at
@@ -63,6 +65,11 @@ op! {
     };
 }
 
+/// The error if heights are used before they were read. Requests read them first.
+fn unread() -> Error {
+    Error::new(ErrorKind::Internal, "heights of a file were used before they were read")
+}
+
 impl Dem {
     /// Whether the heights of the file that a window reads are available. If only a part of the file was read, the
     /// window must be inside that part.
@@ -72,18 +79,17 @@ impl Dem {
         else {
             return true;
         };
-        let cell = ground.grid.window().cell;
-        // The interpolating cubic reads one sample before and two after a position.
-        let span = |first: f64, last: f64, samples: usize| {
-            let [first, last] = [first, last].map(|at| (at / cell).floor() as i64);
-            let (start, end) = (first.saturating_sub(2).max(0), last.saturating_add(4).min(samples as i64));
-            (start, end.saturating_sub(start).max(0) as usize)
-        };
+        self.reads(window).is_some_and(|read| ground.grid.window().contains(&read))
+    }
+
+    /// The samples of the file that a window reads, on the lattice of the file. `None` if the file has no samples yet.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn reads(&self, window: &Window) -> Option<Window> {
         let [left, top] = self.at;
         let (right, bottom) = (window.east(window.width.max(1) - 1), window.south(window.height.max(1) - 1));
-        let (x, width) = span(window.east(0) - left, right - left, ground.size[0]);
-        let (y, height) = span(window.south(0) - top, bottom - top, ground.size[1]);
-        width > 0 && height > 0 && ground.grid.window().contains(&Window { x, y, width, height, cell })
+        let (west, north) = (window.east(0) - left, window.south(0) - top);
+        self.path.ground().map(|ground| around(ground, [west, right - left], [north, bottom - top]))
     }
 
     /// The share of `outside`, 0 to 1, at a position in the file's own metres.
@@ -98,6 +104,26 @@ impl Dem {
     }
 }
 
+/// The samples of a file that the interpolating cubic reads between the first and the last of positions, in metres from
+/// the first sample of the file.
+fn around(ground: &PreparedDem, xs: [f64; 2], ys: [f64; 2]) -> Window {
+    let cell = ground.grid.window().cell;
+    // It reads one sample before and two after a position. Beyond the file it reads the samples at the border.
+    let span = |[first, last]: [f64; 2], samples: usize| {
+        let samples = samples as i64;
+        let [first, last] = [first, last].map(|at| (at / cell).floor() as i64);
+        let start = first.saturating_sub(2).clamp(0, (samples - 4).max(0));
+        (start, (last.saturating_add(4).clamp(samples.min(4), samples) - start) as usize)
+    };
+    let ((x, width), (y, height)) = (span(xs, ground.size[0]), span(ys, ground.size[1]));
+    Window { x, y, width, height, cell }
+}
+
+/// The lowest and the highest of values.
+fn range(values: &[f64]) -> [f64; 2] {
+    values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(*value), high.max(*value)])
+}
+
 impl Field for Dem {
     fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) -> Result<()> {
         // A world is not opened without its files. A plan that runs without a world has no values here.
@@ -110,7 +136,12 @@ impl Field for Dem {
         let size = ground.size.map(|samples| (samples as f64 - 1.0) * cell);
         let finish = |xs: &[f64], ys: &[f64], points: &Points, out: &mut [f32]| {
             if self.shows == DemShows::Height {
-                resample::read(&ground.grid, LayerKind::Height, points, out);
+                let window = self.path.dem_file().map(|file| file.covering(&around(ground, range(xs), range(ys))));
+                let heights = match &window {
+                    None => ground,
+                    Some(held) => held.as_ref().ok_or_else(unread)?,
+                };
+                resample::read(&heights.grid, LayerKind::Height, points, out);
             }
             let lattice = matches!(points, Points::Lattice { .. });
             for (k, sample) in out.iter_mut().enumerate() {
@@ -129,20 +160,20 @@ impl Field for Dem {
                     }
                 };
             }
+            Ok(())
         };
         match at {
             Points::Lattice { xs, ys } if !xs.is_empty() => {
                 let xs: Vec<f64> = xs.iter().map(|x| x - left).collect();
                 let ys: Vec<f64> = ys.iter().map(|y| y - top).collect();
-                finish(&xs, &ys, &Points::Lattice { xs: &xs, ys: &ys }, out);
+                finish(&xs, &ys, &Points::Lattice { xs: &xs, ys: &ys }, out)
             }
             _ => {
                 let (x, y): (Vec<f64>, Vec<f64>) =
                     (0..out.len()).map(|k| at.position(k).unwrap_or(NOWHERE)).map(|(x, y)| (x - left, y - top)).unzip();
-                finish(&x, &y, &Points::Scattered { x: &x, y: &y }, out);
+                finish(&x, &y, &Points::Scattered { x: &x, y: &y }, out)
             }
         }
-        Ok(())
     }
 
     fn cost(&self) -> f64 {

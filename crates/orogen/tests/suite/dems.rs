@@ -135,7 +135,7 @@ fn what_stands_beside_a_file_tells_its_place() {
 }
 
 /// The bits of heights, so that NaN can be compared too.
-fn bits(heights: &[f32]) -> Vec<u32> {
+pub fn bits(heights: &[f32]) -> Vec<u32> {
     heights.iter().map(|height| height.to_bits()).collect()
 }
 

@@ -4,6 +4,7 @@
 mod allocations;
 mod chunks;
 mod damaged_dems;
+mod dem_windows;
 mod dems;
 mod fit;
 mod flight;
