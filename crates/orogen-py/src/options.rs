@@ -65,7 +65,7 @@ fn type_of(kind: ValueKind) -> &'static str {
         ValueKind::Numbers | ValueKind::Range | ValueKind::Point | ValueKind::Tuple(..) => "Sequence[float]",
         ValueKind::Size(..) => "int | tuple[int, int]",
         ValueKind::Clock | ValueKind::Text | ValueKind::Color | ValueKind::Layer | ValueKind::Paper => "str",
-        ValueKind::Word(..) | ValueKind::Choice(..) => "str",
+        ValueKind::Word(..) | ValueKind::Choice(..) | ValueKind::Part(..) => "str",
         ValueKind::Palette | ValueKind::Tileset | ValueKind::File => "str | PathLike[str]",
     }
 }

@@ -63,17 +63,24 @@ fn build(args: &Args) -> Result<(), Failure> {
     let view = args.samples.view.samples(args.samples.size)?;
     let spec = BuildSpec::new(form, form.window(&world, &view, &options)?).with_options(&options);
     let build = Build::new(&world, &spec, &output)?;
+    if spec.part.is_some() && args.run.replace.no_clobber {
+        let message = "--part continues what other parts have begun; leave out --no-clobber";
+        return Err(Failure::Usage(message.into()));
+    }
     let start = match (args.resume, args.run.replace.force) {
         (true, _) => Start::Resume,
         (_, true) => Start::Force,
         _ => Start::Fresh,
     };
-    needs(args, &build, start)?;
+    needs(args, &build, &spec, start)?;
     let (bar, progress) = Bar::new(args.run.quiet);
     let report = build.run(start, &progress);
     drop(bar);
-    let report =
-        report.map_err(|error| interrupt::explain(error.into(), "run the same command with --resume to continue"))?;
+    let then = match spec.part {
+        Some(_) => "run the same command to continue",
+        None => "run the same command with --resume to continue",
+    };
+    let report = report.map_err(|error| interrupt::explain(error.into(), then))?;
     finite::tell(&spec.layers.join("`, `"), report.samples)?;
     if !report.foreign.is_empty() {
         let names: Vec<String> = report.foreign.iter().map(|path| path.display().to_string()).collect();
@@ -87,10 +94,10 @@ fn build(args: &Args) -> Result<(), Failure> {
 }
 
 /// Prints the required memory and disk space, and fails if they are not available.
-fn needs(args: &Args, build: &Build, start: Start) -> Result<(), Failure> {
+fn needs(args: &Args, build: &Build, spec: &BuildSpec, start: Start) -> Result<(), Failure> {
     let (disk, there) = build.disk();
     let free = disk::free_at(&args.out);
-    let there = if start == Start::Resume { there } else { 0 };
+    let there = if start == Start::Resume || spec.part.is_some() { there } else { 0 };
     if !args.run.quiet {
         let (tiles, samples) = build.tiles();
         let way = match disk.scratch {
@@ -98,8 +105,9 @@ fn needs(args: &Args, build: &Build, start: Start) -> Result<(), Failure> {
             scratch => format!(", and temporarily {} in {}", bytes(scratch), build.beside().display()),
         };
         let free = free.map_or(String::new(), |free| format!("; {} are free", bytes(free)));
+        let part = spec.part.map_or(String::new(), |[number, count]| format!("part {number} of {count}: "));
         say::error(&format!(
-            "{} of {:.1} million samples; up to {} of memory; up to {} of disk{way}{free}",
+            "{part}{} of {:.1} million samples; up to {} of memory; up to {} of disk{way}{free}",
             count(tiles, "tile"),
             samples as f64 / 1e6,
             bytes(build.memory()),
@@ -114,6 +122,7 @@ fn needs(args: &Args, build: &Build, start: Start) -> Result<(), Failure> {
 fn closing(args: &Args, spec: &BuildSpec, report: &Report, seconds: f64) -> String {
     let Window { width, height, cell, .. } = spec.window;
     let made = match report {
+        Report { made: 0, .. } if spec.part.is_some() => "nothing was left to make".to_string(),
         Report { made: 0, .. } => "all parts were complete and valid".to_string(),
         Report { made, kept: 0, .. } => format!("{} made", count(*made, "tile")),
         Report { made, kept, again: 0, .. } => format!("{} made, {kept} kept", count(*made, "tile")),
@@ -121,11 +130,30 @@ fn closing(args: &Args, spec: &BuildSpec, report: &Report, seconds: f64) -> Stri
             format!("{} made, {kept} kept ({again} of them computed again as input)", count(*made, "tile"))
         }
     };
+    let parts = spec.part.map_or(String::new(), |part| state_of_parts(part, &report.left));
     format!(
-        "{}: {}, {width} x {height} samples of {} m, {}\n{made} in {seconds:.1} s\n",
+        "{}: {}, {width} x {height} samples of {} m, {}\n{made} in {seconds:.1} s\n{parts}",
         Path::new(&args.out).display(),
         spec.layers.join(", "),
         number(cell),
         bytes(report.bytes),
     )
+}
+
+/// Parts that are named in messages; of more parts, only their number is given.
+const NAMED: usize = 8;
+
+/// The line about the other parts of a build.
+fn state_of_parts([number, count]: [usize; 2], left: &[usize]) -> String {
+    if left.contains(&number) {
+        return format!("files of part {number} of {count} were removed; run it again\n");
+    }
+    let numbers: Vec<String> = left.iter().map(usize::to_string).collect();
+    let left = match numbers.as_slice() {
+        [] => return "the result is complete\n".to_string(),
+        [one] => format!("part {one} is not"),
+        [init @ .., last] if init.len() < NAMED => format!("parts {} and {last} are not", init.join(", ")),
+        all => format!("{} parts are not", all.len()),
+    };
+    format!("part {number} of {count} is complete; {left}, and the last part finishes the result\n")
 }

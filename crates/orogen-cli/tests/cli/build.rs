@@ -83,6 +83,11 @@ fn what_cannot_be_built_is_usage() {
         (&["-o", "a.zarr", "--tile", "0"], 2, "invalid value"),
         (&["-o", "a.tif", "--tile", "100"], 2, "a multiple of 16"),
         (&["-o", "a.tif", "--resume", "--no-clobber"], 2, "cannot be used with"),
+        (&["-o", "a.tif", "--part", "0/4"], 2, "parts are counted from 1: the first of 64 parts is 1/64"),
+        (&["-o", "a.tif", "--part", "5/4"], 2, "there is no part 5 of 4: the last is 4/4"),
+        (&["-o", "a.tif", "--part", "all"], 2, "it must be K/N, such as 3/64 for the third of 64 parts"),
+        (&["-o", "a.tif", "--part", "1/4", "--force"], 2, "--part cannot be used with --force"),
+        (&["-o", "a.tif", "--part", "1/4", "--no-clobber"], 2, "leave out --no-clobber"),
         (&["-o", "none/a.tif"], 1, "cannot write into none: the folder does not exist"),
         (&["-o", "a.zarr", "--memory", "1kB"], 1, "of memory"),
         (&["-o", "small.toml", "--tiles", "png"], 1, "this command reads that file"),
@@ -147,6 +152,71 @@ fn kill_builds(kills: u32) {
         if killed >= kills {
             break;
         }
+    }
+}
+
+#[test]
+fn what_parts_say() {
+    let folder = Folder::with_small();
+    let (name, asked) = BUILDS[1];
+    folder.good(&arguments("whole.zarr", asked, &["-q"]));
+    let part = |part: &str, more: &[&str]| {
+        let outcome = folder.good(&arguments(name, asked, &[&["--part", part], more].concat()));
+        (outcome.text().to_string(), outcome.err)
+    };
+    let (out, err) = part("2/3", &[]);
+    assert!(err.starts_with("part 2 of 3: 16 tiles of 0.3 million samples"), "{err}");
+    assert!(out.contains("\n16 tiles made in "), "{out}");
+    assert!(
+        out.ends_with(" s\npart 2 of 3 is complete; parts 1 and 3 are not, and the last part finishes the result\n"),
+        "{out}"
+    );
+    folder.bad(&arguments(name, asked, &["-q", "--part", "1/4"]), 1, "was started in 3 parts, not in 4");
+    let other = ["--part", "1/3", "-q", "--seed", "9"];
+    folder.bad(&arguments(name, asked, &other), 1, "it was started from another recipe or seed");
+    let (out, _) = part("2/3", &["--resume"]);
+    assert!(out.contains("\nnothing was left to make in "), "{out}");
+    assert_eq!(part("1/3", &["-q"]), (String::new(), String::new()));
+    assert!(!folder.path("a.zarr/zarr.json").exists());
+    let (out, _) = part("3/3", &[]);
+    assert!(out.ends_with(" s\nthe result is complete\n"), "{out}");
+    assert!(files(&folder.path(name)) == files(&folder.path("whole.zarr")));
+    let (out, _) = part("1/3", &[]);
+    assert!(out.ends_with(" s\nthe result is complete\n"), "{out}");
+    assert_eq!(folder.names("a.zarr.build"), ["journal", "lock"]);
+}
+
+#[test]
+fn killed_parts_end_with_the_same_bytes() {
+    let mut state = 362_436_069u32;
+    for (name, asked) in BUILDS {
+        let folder = Folder::with_small();
+        let begun = Instant::now();
+        folder.good(&arguments(name, asked, &["-q"]));
+        let (expect, usual) = (files(&folder.path(name)), begun.elapsed());
+        let folder = Folder::with_small();
+        // In each of three rounds, all parts are started and two of them are killed. Nothing is killed in the last one.
+        for round in 0..4 {
+            let part = |number: usize| {
+                let part = format!("{number}/3");
+                start(&folder, &arguments(name, asked, &["-q", "--threads", "1", "--part", &part]))
+            };
+            let mut parts: Vec<Child> = [2, 3, 1].map(part).into();
+            for killed in parts.iter_mut().take(if round < 3 { 2 } else { 0 }) {
+                state ^= state << 13;
+                state ^= state >> 17;
+                state ^= state << 5;
+                std::thread::sleep(usual.mul_f64(f64::from(state) / f64::from(u32::MAX)));
+                killed.kill().unwrap();
+            }
+            for part in parts {
+                let output = part.wait_with_output().unwrap();
+                let said = String::from_utf8_lossy(&output.stderr);
+                assert!(output.status.success() || round < 3 && output.status.code().is_none(), "{name}: {said}");
+            }
+        }
+        assert!(files(&folder.path(name)) == expect, "{name}");
+        assert_eq!(folder.names(&format!("{name}.build")), ["journal", "lock"], "{name}");
     }
 }
 
@@ -235,6 +305,25 @@ fn two_builds_do_not_work_on_one_place() {
     drop(build);
     // The lock was released when its process ended.
     folder.bad(&arguments("a.zarr", &SLOW, &["-q"]), 1, "is an unfinished build; use --resume to continue it");
+}
+
+#[test]
+fn a_part_is_not_built_twice_at_the_same_time() {
+    let folder = with_slow();
+    let mut part = Running::start_and_wait(&folder, &arguments("a.zarr", &SLOW, &["--part", "1/2"]));
+    folder.bad(&arguments("a.zarr", &SLOW, &["-q", "--part", "1/2"]), 1, "part 1 of 2 of ");
+    folder.bad(&arguments("a.zarr", &SLOW, &["-q", "--part", "1/3"]), 1, "was started in 2 parts, not in 3");
+    folder.bad(&arguments("a.zarr", &SLOW, &["-q", "--resume"]), 1, "another build of ");
+    let other = Running::start_and_wait(&folder, &arguments("a.zarr", &SLOW, &["--part", "2/2"]));
+    assert!(part.child.try_wait().unwrap().is_none(), "the first part still works");
+    drop(other);
+    #[cfg(unix)]
+    {
+        part.signal("-INT");
+        let (code, said) = part.ended();
+        assert_eq!(code, Some(130), "{said:?}");
+        assert_eq!(said.last().unwrap(), "stopped: run the same command to continue", "{said:?}");
+    }
 }
 
 #[test]

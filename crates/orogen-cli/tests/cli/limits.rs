@@ -373,6 +373,9 @@ fn ends(kind: ValueKind) -> Vec<String> {
         ValueKind::Size(most) => {
             [&all(&["0", "1x1", "64x", "nan", ""])[..], &[format!("{}", most + 1), format!("{most}x1")]].concat()
         }
+        ValueKind::Part(most) => {
+            [&all(&["1/1", "0/1", "2/1", "1", "/", "-1/2", ""])[..], &[format!("1/{}", most + 1)]].concat()
+        }
         ValueKind::Clock => all(&["00:00", "23:59", "24:00", "12", ""]),
         ValueKind::Numbers => all(&["1e300", "-1e300,1e300", "0,0", "1,,2", "nan", ""]),
         ValueKind::Choice(choices) => {

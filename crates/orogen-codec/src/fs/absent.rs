@@ -92,6 +92,10 @@ impl File {
     pub fn try_lock(&self) -> Result<(), TryLockError> {
         match self.0 {}
     }
+
+    pub fn try_lock_shared(&self) -> Result<(), TryLockError> {
+        match self.0 {}
+    }
 }
 
 macro_rules! streams {

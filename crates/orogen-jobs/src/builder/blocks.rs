@@ -62,13 +62,21 @@ impl Block {
         for top in (0..stage.rows).step_by(self.rows) {
             for left in (0..stage.columns).step_by(self.columns) {
                 let (bottom, right) = ((top + self.rows).min(stage.rows), (left + self.columns).min(stage.columns));
-                let all = (top..bottom).flat_map(|row| (left..right).map(move |column| (row, column)));
-                let some: Vec<(usize, usize)> = all.filter(|tile| wanted.contains(tile)).collect();
-                if some.len() == (bottom - top) * (right - left) {
-                    groups.push(some);
-                } else {
-                    // The tiles of a partial block are made one by one, so that nothing is computed twice.
-                    groups.extend(some.into_iter().map(|tile| vec![tile]));
+                // A partial block is halved until each piece is complete, so that no other tile is computed.
+                let mut pieces = vec![(top..bottom, left..right)];
+                while let Some((rows, columns)) = pieces.pop() {
+                    let all = rows.clone().flat_map(|row| columns.clone().map(move |column| (row, column)));
+                    let some: Vec<(usize, usize)> = all.filter(|tile| wanted.contains(tile)).collect();
+                    if some.len() == rows.len() * columns.len() {
+                        groups.push(some);
+                    } else if some.is_empty() {
+                    } else if rows.len() > columns.len() {
+                        let middle = rows.start + rows.len() / 2;
+                        pieces.extend([(middle..rows.end, columns.clone()), (rows.start..middle, columns)]);
+                    } else {
+                        let middle = columns.start + columns.len() / 2;
+                        pieces.extend([(rows.clone(), middle..columns.end), (rows, columns.start..middle)]);
+                    }
                 }
             }
         }

@@ -23,6 +23,9 @@ enum Line {
     /// be infinite.
     #[serde(rename = "tile")]
     Done([usize; 3], Vec<(u64, String)>, Vec<[u32; 2]>),
+    /// The number of parts that make the result together.
+    #[serde(rename = "parts")]
+    Parts(usize),
     /// The build is complete. Lists the files that belong to no tile, by their paths within the result.
     #[serde(rename = "finished")]
     Finished(Vec<(PathBuf, u64, String)>),
@@ -38,6 +41,8 @@ pub struct JournalState {
     pub identity: Identity,
     /// The completed jobs.
     pub records: BTreeMap<Job, Record>,
+    /// The number of parts that make the result together; `None` if one process makes it.
+    pub parts: Option<usize>,
     /// The files that belong to no tile, if the build is complete.
     pub finished: Option<Vec<(PathBuf, FileDigest)>>,
 }
@@ -46,7 +51,7 @@ impl JournalState {
     /// The state of a new build.
     #[must_use]
     pub fn begun(identity: Identity) -> JournalState {
-        JournalState { identity, records: BTreeMap::new(), finished: None }
+        JournalState { identity, records: BTreeMap::new(), parts: None, finished: None }
     }
 
     /// Reads the journal at `path`; `None` if there is none. Damaged or truncated lines after the first are ignored.
@@ -77,6 +82,7 @@ impl JournalState {
         for line in lines.flatten() {
             match line {
                 Line::Begun(_) => {}
+                Line::Parts(count) => state.parts = Some(count),
                 Line::Done([stage, row, column], files, ranges) => {
                     let digests = files.into_iter().map(|(length, sha256)| FileDigest { length, sha256 }).collect();
                     let ranges = ranges.into_iter().map(|range| range.map(f32::from_bits)).collect();
@@ -98,7 +104,7 @@ impl JournalState {
             let files = files.iter().map(|(path, digest)| (path.clone(), digest.length, digest.sha256.clone()));
             Line::Finished(files.collect())
         });
-        std::iter::once(begun).chain(done).chain(finished)
+        std::iter::once(begun).chain(self.parts.map(Line::Parts)).chain(done).chain(finished)
     }
 }
 
@@ -180,7 +186,7 @@ mod tests {
             tile: 512,
             map: None,
         };
-        let mut state = JournalState::begun(identity);
+        let mut state = JournalState { parts: Some(7), ..JournalState::begun(identity) };
         for n in 0..4usize {
             let digests = (0..n).map(|k| FileDigest::of(&vec![0; k])).collect();
             let ranges = vec![[n as f32 / 3.0, f32::NEG_INFINITY]; n];

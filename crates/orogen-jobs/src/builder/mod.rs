@@ -10,6 +10,10 @@
 //! journal and a lock. After completion only the journal remains there; a later resume uses it to check whether the
 //! result is still intact, and to make damaged parts again.
 //!
+//! **Parts.** Processes on several machines can make one result together: each makes the tiles of its
+//! [part](BuildSpec::with_part), and the last one finishes the result. Until then, the folder next to the result has a
+//! journal and a lock of each part in `parts`.
+//!
 //! **Safety.** A tile counts as complete only if the journal has an entry for it *and* the file has the length and
 //! SHA-256 of that entry. Files therefore need not be synced one by one: files lost in a power cut are detected and
 //! made again. All files are synced once before the result is declared complete.
@@ -24,6 +28,9 @@ mod job;
 #[doc(hidden)]
 pub mod journal;
 mod output_store;
+mod part;
+mod part_folder;
+mod part_run;
 #[doc(hidden)]
 pub mod run;
 mod samples;

@@ -1,6 +1,6 @@
 //! Running a build.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use orogen_grid::parallel;
@@ -13,6 +13,8 @@ use super::identity::Identity;
 use super::job::{Job, JobFile, Record, Stage};
 use super::journal::{Journal, JournalState};
 use super::output_store::{OutputStore, Put, put};
+use super::part::Part;
+use super::part_folder::{self, PartFolder};
 use super::samples::range;
 use super::spec::{BuildSpec, Form};
 use super::target::{BuildTarget, Disk, paths};
@@ -42,7 +44,7 @@ pub enum Start {
 const PACKING: f64 = 15.0;
 
 /// Statistics of a run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Report {
     /// Tiles made in this run, including tiles of overviews and lower zooms.
     pub made: usize,
@@ -56,6 +58,8 @@ pub struct Report {
     pub foreign: Vec<PathBuf>,
     /// Size of the result's tiles, or of the single file, in bytes.
     pub bytes: u64,
+    /// The parts of the build that are not complete, of very many not all; empty if the result is complete.
+    pub left: Vec<usize>,
 }
 
 /// A checked build, ready to run.
@@ -78,12 +82,13 @@ pub struct Report {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Build<'a> {
-    world: &'a World,
-    identity: Identity,
-    target: Box<dyn BuildTarget>,
+    pub(super) world: &'a World,
+    pub(super) identity: Identity,
+    pub(super) target: Box<dyn BuildTarget>,
     stages: Vec<Stage>,
     block: Block,
-    work_dir: WorkDir,
+    pub(super) work_dir: WorkDir,
+    part: Option<Part>,
     /// The function that writes files.
     pub(super) put: Box<Put>,
 }
@@ -106,8 +111,13 @@ impl<'a> Build<'a> {
         let target = target(world, &identity, spec.form)?;
         let stages = target.stages();
         let block = Block::fitting(world, target.as_ref(), stages[0], &layers)?;
+        let part = spec.part.map(|[number, count]| Part { number, count });
         let work_dir = WorkDir::new(output, spec.form.is_file())?;
-        Ok(Build { world, identity, target, stages, block, work_dir, put: Box::new(put) })
+        let work_dir = match part {
+            Some(part) => work_dir.for_part(part.number),
+            None => work_dir,
+        };
+        Ok(Build { world, identity, target, stages, block, work_dir, part, put: Box::new(put) })
     }
 
     /// Maximum memory, in bytes.
@@ -116,22 +126,50 @@ impl<'a> Build<'a> {
         self.block.memory
     }
 
-    /// Maximum disk space, and the number of bytes that already exist.
+    /// Maximum disk space, and the number of bytes that already exist. Of a part, its share, unless it begins the
+    /// build.
     #[must_use]
     pub fn disk(&self) -> (Disk, u64) {
-        let there = match JournalState::read(&self.work_dir.journal()) {
-            Ok(Some(state)) => {
-                sum(state.records.values().flat_map(|record| &record.digests).map(|digest| digest.length))
-            }
-            _ => 0,
+        let (disk, state) = (self.target.disk(), JournalState::read(&self.work_dir.journal()));
+        let Ok(Some(mut state)) = state else { return (disk, 0) };
+        let made = |state: &JournalState| {
+            sum(state.records.values().flat_map(|record| &record.digests).map(|digest| digest.length))
         };
-        (self.target.disk(), there)
+        let Some(part) = self.part else {
+            part_folder::merge(&self.work_dir.parts(), &mut state);
+            return (disk, made(&state));
+        };
+        let (own, all) = (self.tiles().0 as u128, self.stages[0].len().max(1) as u128);
+        let [result, scratch] = [disk.result, disk.scratch].map(|bytes| (u128::from(bytes) * own / all) as u64);
+        let own = PartFolder::new(&self.work_dir.parts(), part).own(&self.identity);
+        let there = match state.finished {
+            Some(_) => result.saturating_add(scratch),
+            None => own.as_ref().map_or(0, made),
+        };
+        (Disk { result, scratch }, there)
     }
 
-    /// Number of tiles and of samples, including tiles and samples of overviews and lower zooms.
+    /// Number of tiles and of samples, including tiles and samples of overviews and lower zooms. Of a part, those of
+    /// its share, which has neither.
     pub fn tiles(&self) -> (usize, u64) {
+        if self.part.is_some() {
+            let count = self.share().len();
+            return (count, count as u64 * self.stages[0].samples as u64);
+        }
         let samples = self.stages.iter().map(|stage| stage.len() as u64 * stage.samples as u64).sum();
         (self.stages.iter().map(Stage::len).sum(), samples)
+    }
+
+    /// The maximum number of parts that have something to do.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn max_parts(&self) -> usize {
+        self.stages[0].len()
+    }
+
+    /// The jobs of the first stage that this part does.
+    pub(super) fn share(&self) -> BTreeSet<Job> {
+        self.part.unwrap_or(Part { number: 1, count: 1 }).jobs(self.stages[0])
     }
 
     /// The folder with the journal and, until the build is complete, temporary files.
@@ -140,12 +178,15 @@ impl<'a> Build<'a> {
         self.work_dir.beside()
     }
 
-    /// Runs the build.
+    /// Runs the build, or its part. A part always continues what exists, and cannot start again with [`Start::Force`].
     ///
     /// # Errors
     /// If `start` does not allow an existing result, another build is running there, a file cannot be written, or the
     /// work is cancelled. After any of these, and after a kill, [`Start::Resume`] continues.
     pub fn run(&self, start: Start, progress: &Progress) -> Result<Report> {
+        if let Some(part) = self.part {
+            return self.run_part(part, start, progress);
+        }
         let mut held = self.work_dir.hold()?;
         let (state, sound, foreign) = self.begin(start, progress)?;
         held.keep();
@@ -155,14 +196,31 @@ impl<'a> Build<'a> {
         }
         let wanted = self.wanted(&sound);
         let (kept, again) = (sound.len(), wanted.intersection(&sound).count());
-        let records: BTreeMap<Job, Record> = state.records;
-        let journal = JournalState { identity: self.identity.clone(), records: records.clone(), finished: None };
+        let state = JournalState { parts: None, finished: None, ..state };
         self.work_dir.tidy()?;
         self.work_dir.furnish()?;
-        let journal = Journal::write(&self.work_dir.journal(), &self.work_dir.temporary(0), &journal)?;
-        let store = OutputStore::new(&self.work_dir, journal, records, self.put.as_ref());
+        let (samples, bytes) = self.finish(&wanted, &state, &BTreeSet::new(), progress)?;
+        self.work_dir.sweep()?;
         let made = wanted.len() - again;
-        let samples = self.world.install(|| self.make(&wanted, &store, progress))?;
+        Ok(Report { made, kept, again, samples, foreign, bytes, left: Vec::new() })
+    }
+
+    /// Makes the wanted jobs, finishes the result and records completion in the journal. `synced` are jobs whose files
+    /// need not be synced. Returns the count of finite samples, and the size of the result.
+    pub(super) fn finish(
+        &self,
+        wanted: &BTreeSet<Job>,
+        state: &JournalState,
+        synced: &BTreeSet<Job>,
+        progress: &Progress,
+    ) -> Result<(FiniteCount, u64)> {
+        let journal = Journal::write(&self.work_dir.journal(), &self.work_dir.temporary(0), state)?;
+        if state.parts.is_none() {
+            // Their records are in the journal now.
+            self.work_dir.drop_parts()?;
+        }
+        let store = OutputStore::new(&self.work_dir, journal, state.records.clone(), self.put.as_ref());
+        let samples = self.world.install(|| self.make(wanted, &store, progress))?;
         progress.check()?;
         for (n, layer) in self.identity.layers.iter().enumerate() {
             if store.range(n).is_none() {
@@ -171,8 +229,8 @@ impl<'a> Build<'a> {
             }
         }
         let extra = self.target.finish(&store)?;
-        let bytes = self.close(store, extra)?;
-        Ok(Report { made, kept, again, samples, foreign, bytes })
+        let made_before = |job: &Job| synced.contains(job) && !wanted.contains(job);
+        Ok((samples, self.close(store, extra, made_before)?))
     }
 
     /// The state of the build, and the jobs whose files are intact.
@@ -184,7 +242,10 @@ impl<'a> Build<'a> {
                 foreign = self.clear(read.ok().flatten().map(|state| state.identity).as_ref(), known)?;
                 None
             }
-            (_, read) => read?,
+            (_, read) => read?.map(|mut state| {
+                part_folder::merge(&self.work_dir.parts(), &mut state);
+                state
+            }),
         };
         let refuse = |message: String| Err(Error::new(ErrorKind::File, message));
         let out = self.work_dir.out().display();
@@ -234,7 +295,7 @@ impl<'a> Build<'a> {
     }
 
     /// The jobs whose files all exist and are unchanged.
-    fn sound(&self, state: &JournalState, progress: &Progress) -> Result<BTreeSet<Job>> {
+    pub(super) fn sound(&self, state: &JournalState, progress: &Progress) -> Result<BTreeSet<Job>> {
         let records: Vec<(&Job, &Record)> = state.records.iter().collect();
         let checked = parallel::try_map(records, |(job, record)| -> Result<Option<Job>> {
             progress.check()?;
@@ -262,12 +323,13 @@ impl<'a> Build<'a> {
             again: 0,
             samples: FiniteCount::default(),
             foreign: Vec::new(),
-            bytes: self.bytes(&state.records, sum(finished.iter().map(|(_, digest)| digest.length))),
+            bytes: self.bytes_of(state),
+            left: Vec::new(),
         })
     }
 
     /// The jobs to run: jobs whose part of the result is missing, and missing jobs that these depend on.
-    fn wanted(&self, sound: &BTreeSet<Job>) -> BTreeSet<Job> {
+    pub(super) fn wanted(&self, sound: &BTreeSet<Job>) -> BTreeSet<Job> {
         let mut wanted = BTreeSet::new();
         for (stage, Stage { rows, columns, .. }) in self.stages.iter().enumerate().rev() {
             let read: BTreeSet<Job> = wanted
@@ -296,7 +358,7 @@ impl<'a> Build<'a> {
     }
 
     /// Runs the jobs, stage by stage. Returns the count of finite samples.
-    fn make(&self, wanted: &BTreeSet<Job>, store: &OutputStore, progress: &Progress) -> Result<FiniteCount> {
+    pub(super) fn make(&self, wanted: &BTreeSet<Job>, store: &OutputStore, progress: &Progress) -> Result<FiniteCount> {
         let mut count = FiniteCount::default();
         let samples = |stage: usize| {
             wanted.iter().filter(|job| job.stage == stage).map(|job| self.stages[job.stage].samples as f64).sum::<f64>()
@@ -366,37 +428,39 @@ impl<'a> Build<'a> {
         Ok(())
     }
 
-    /// Finishes the result, records completion in the journal, and removes temporary files. Returns the size of the
-    /// result.
-    fn close(&self, store: OutputStore, extra: Vec<(PathBuf, FileDigest)>) -> Result<u64> {
+    /// Syncs the result, except for the files of jobs that are already synced, and records completion in the journal.
+    /// Returns the size of the result.
+    fn close(
+        &self,
+        store: OutputStore,
+        extra: Vec<(PathBuf, FileDigest)>,
+        is_synced: impl Fn(&Job) -> bool,
+    ) -> Result<u64> {
         let mut records = store.into_records();
         if self.target.assembles() {
             // From now on the assembled file is checked.
             records.clear();
         }
-        let mut paths: Vec<PathBuf> = extra.iter().map(|(path, _)| path.clone()).collect();
-        for job in records.keys() {
-            paths.extend(self.target.places(*job).into_iter().filter_map(|place| match place {
-                JobFile::Result(path) => Some(path),
-                JobFile::Scratch(_) => None,
-            }));
+        let mut files: Vec<JobFile> = extra.iter().map(|(path, _)| JobFile::Result(path.clone())).collect();
+        for job in records.keys().filter(|job| !is_synced(job)) {
+            let places = self.target.places(*job).into_iter();
+            files.extend(places.filter(|place| matches!(place, JobFile::Result(_))));
         }
-        self.work_dir.sync(&paths)?;
-        let bytes = self.bytes(&records, sum(extra.iter().map(|(_, digest)| digest.length)));
-        let state = JournalState { identity: self.identity.clone(), records, finished: Some(extra) };
+        self.work_dir.sync(&files)?;
+        let state = JournalState { records, finished: Some(extra), ..JournalState::begun(self.identity.clone()) };
         Journal::write(&self.work_dir.journal(), &self.work_dir.temporary(0), &state)?;
-        self.work_dir.sweep()?;
-        Ok(bytes)
+        Ok(self.bytes_of(&state))
     }
 
-    /// The size of the result in bytes.
-    fn bytes(&self, records: &BTreeMap<Job, Record>, extra: u64) -> u64 {
+    /// The size of the files of the result that a journal lists, in bytes.
+    pub(super) fn bytes_of(&self, state: &JournalState) -> u64 {
+        let extra = state.finished.iter().flatten().map(|(_, digest)| digest.length);
         let of = |(job, record): (&Job, &Record)| -> u64 {
             let places = self.target.places(*job);
             let own = places.iter().zip(&record.digests).filter(|(place, _)| matches!(place, JobFile::Result(_)));
             sum(own.map(|(_, digest)| digest.length))
         };
-        sum(records.iter().map(of).chain([extra]))
+        sum(state.records.iter().map(of).chain(extra))
     }
 }
 

@@ -132,6 +132,8 @@ pub struct BuildSpec {
     pub tile: Option<usize>,
     /// The layers, without duplicates; `height` by default.
     pub layers: Vec<String>,
+    /// The part that is made, from 1, and the number of parts; `None`, the default, for the whole build.
+    pub part: Option<[usize; 2]>,
 }
 
 const TILES: &[Choice] = &[
@@ -160,7 +162,14 @@ const OPTIONS: &[OptionSpec] = &[
         "Samples along each side of a tile [default: 512; 513 for tiles that share their edges; 256 for an XYZ \
              tree]",
     ),
+    OptionSpec::new("part", "K/N", ValueKind::Part(MAX_PARTS)).with_about(
+        "Build only part K of N: N processes, also on other machines, make one result together, and the last one \
+             finishes it",
+    ),
 ];
+
+/// Maximum number of parts.
+const MAX_PARTS: u64 = 1_000_000;
 
 /// Maximum length of a layer name that becomes part of a file name.
 const LONGEST_NAME: usize = 100;
@@ -169,15 +178,16 @@ impl BuildSpec {
     /// The options, for front ends.
     pub const OPTIONS: &[OptionSpec] = OPTIONS;
 
-    /// Sets the tiles and layers that are chosen by [`OPTIONS`](BuildSpec::OPTIONS).
+    /// Sets the tiles, layers and part that are chosen by [`OPTIONS`](BuildSpec::OPTIONS).
     pub fn with_options(self, options: &Options) -> BuildSpec {
         let tile = options.whole("tile").map(|side| side as usize);
-        BuildSpec { tile, ..self }.with_layers(options.text("layers").unwrap_or(HEIGHT).split(','))
+        let part = options.pair("part").map(|part| part.map(|number| number as usize));
+        BuildSpec { tile, part, ..self }.with_layers(options.text("layers").unwrap_or(HEIGHT).split(','))
     }
 
     /// A build of the heights of a window.
     pub fn new(form: Form, window: Window) -> BuildSpec {
-        BuildSpec { form, window, tile: None, layers: vec![HEIGHT.into()] }
+        BuildSpec { form, window, tile: None, layers: vec![HEIGHT.into()], part: None }
     }
 
     /// Sets the side of a tile, in samples.
@@ -190,15 +200,27 @@ impl BuildSpec {
         BuildSpec { layers: layers.into_iter().map(Into::into).collect(), ..self }
     }
 
+    /// Sets the part that is made: part `number`, from 1, of `count`. Every part is one call of
+    /// [`Build::run`](super::Build::run), in any process and any order; the call that completes the last part finishes
+    /// the result.
+    pub fn with_part(self, number: usize, count: usize) -> BuildSpec {
+        BuildSpec { part: Some([number, count]), ..self }
+    }
+
     /// Rejects specifications that no form can satisfy.
     ///
     /// # Errors
-    /// If there are no layers, duplicate layers, a name that is not valid in file names, or more layers than the form
-    /// can hold.
+    /// If there are no layers, duplicate layers, a name that is not valid in file names, more layers than the form can
+    /// hold, or no such part.
     pub fn check(&self) -> Result<()> {
         let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
         if self.layers.is_empty() {
             return refuse("no layer was chosen; name at least one with --layers".into());
+        }
+        if let Some([number, count]) = self.part
+            && !(1..=count).contains(&number)
+        {
+            return refuse(format!("there is no part {number} of {count}: parts are counted from 1"));
         }
         if self.layers.len() > 1 && !self.form.holds_many() {
             return refuse(format!(

@@ -50,6 +50,8 @@ height = "land"
 rough = "noise"
 "#;
 
+mod parts;
+
 const FORMS: [Form; 7] = Form::ALL;
 
 fn world(memory: Option<u64>, threads: usize) -> World {
@@ -71,7 +73,7 @@ fn spec(form: Form) -> BuildSpec {
         _ => Window::new(101, 77, 5.0).at(7, 11),
     };
     let layers = if form.holds_many() { vec!["height".into(), "rough".into()] } else { vec!["height".into()] };
-    BuildSpec { form, window, tile: Some(tile), layers }
+    BuildSpec { form, window, tile: Some(tile), layers, part: None }
 }
 
 /// A folder for the result of a build.
@@ -169,7 +171,8 @@ fn a_geotiff_is_the_one_that_export_writes() {
         for tile in [16, 32] {
             let window = Window::new(width, height, 5.0).at(n as i64, 3);
             let folder = Folder::new();
-            let spec = BuildSpec { form: Form::Cog, window, tile: Some(tile), layers: vec!["height".into()] };
+            let spec =
+                BuildSpec { form: Form::Cog, window, tile: Some(tile), layers: vec!["height".into()], part: None };
             run(&world, &spec, &folder.out(), Start::Fresh);
             let mut expect = Vec::new();
             let options = options::Options::of_unit("m").with_tile(Some(tile));
@@ -452,7 +455,7 @@ fn impossible_orders_are_sentences() {
     let window = Window::new(50, 50, 5.0);
     let layers = |names: &[&str]| names.iter().map(ToString::to_string).collect::<Vec<String>>();
     let check = |form, window, tile, names: &[&str], expect: &str| {
-        let spec = BuildSpec { form, window, tile, layers: layers(names) };
+        let spec = BuildSpec { form, window, tile, layers: layers(names), part: None };
         let error = Build::new(&world, &spec, &output(&Folder::new().out())).err().unwrap().to_string();
         assert!(error.contains(expect), "{error} / {expect}");
     };

@@ -7,15 +7,17 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::job::JobFile;
+use super::part_folder;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_io::file::{self, Output};
-use orogen_io::fs::{self, File, OpenOptions, TryLockError};
+use orogen_io::fs::{self, File, TryLockError};
 
 /// File names within the folder of the build.
 const LOCK: &str = "lock";
 const JOURNAL: &str = "journal";
 const SCRATCH: &str = "scratch";
 const TEMPORARY: &str = "temporary";
+const PARTS: &str = "parts";
 
 /// Files at the top of a folder that mark a completed build.
 const MARKS: [&str; 3] = ["zarr.json", "manifest.json", "tiles.json"];
@@ -30,6 +32,8 @@ pub struct WorkDir {
     output: Output,
     out: PathBuf,
     beside: PathBuf,
+    /// The folder of temporary files of this process.
+    temporary: PathBuf,
     /// Whether the result is a single file.
     file: bool,
 }
@@ -90,7 +94,19 @@ impl WorkDir {
         }
         let mut beside = name.to_os_string();
         beside.push(".build");
-        Ok(WorkDir { output: output.clone(), beside: real.with_file_name(beside), out: real, file: is_file })
+        let beside = real.with_file_name(beside);
+        let temporary = beside.join(TEMPORARY);
+        Ok(WorkDir { output: output.clone(), beside, temporary, out: real, file: is_file })
+    }
+
+    /// The work directory of a part, which has temporary files of its own.
+    pub fn for_part(self, number: usize) -> WorkDir {
+        WorkDir { temporary: self.beside.join(TEMPORARY).join(format!("part-{number}")), ..self }
+    }
+
+    /// The folder of the parts' journals and locks.
+    pub fn parts(&self) -> PathBuf {
+        self.beside.join(PARTS)
     }
 
     /// The result.
@@ -128,7 +144,7 @@ impl WorkDir {
 
     /// The path of a temporary file; each `n` gives a different path.
     pub fn temporary(&self, n: u64) -> PathBuf {
-        self.beside.join(TEMPORARY).join(n.to_string())
+        self.temporary.join(n.to_string())
     }
 
     /// Creates the folder next to the result and locks it.
@@ -136,6 +152,25 @@ impl WorkDir {
     /// # Errors
     /// If another build is running there, or the folder cannot be written.
     pub fn hold(&self) -> Result<BuildLock> {
+        let (lock, new) = self.lock(|file| file.try_lock(), "another build")?;
+        Ok(BuildLock { _lock: lock, beside: self.beside.clone(), new, kept: false })
+    }
+
+    /// Creates the folder next to the result and locks it for a part; other parts can lock it, too.
+    ///
+    /// # Errors
+    /// If a whole build is running there, or the folder cannot be written.
+    pub fn share(&self) -> Result<File> {
+        Ok(self.lock(|file| file.try_lock_shared(), "a build without --part")?.0)
+    }
+
+    /// Creates the folder next to the result and locks it. Returns also whether the folder is new. `other` is the
+    /// holder of a lock that excludes this one.
+    fn lock(
+        &self,
+        try_lock: impl FnOnce(&File) -> std::result::Result<(), TryLockError>,
+        other: &str,
+    ) -> Result<(File, bool)> {
         file::check_folder(file::folder(&self.out))?;
         let new = match fs::create_dir(&self.beside) {
             Ok(()) => true,
@@ -153,15 +188,12 @@ impl WorkDir {
         }
         let path = self.beside.join(LOCK);
         let failed = |cause: io::Error| Error::file("lock", &path, &cause);
-        let lock = OpenOptions::new().create(true).truncate(false).write(true).open(&path).map_err(failed)?;
-        match lock.try_lock() {
-            Ok(()) => Ok(BuildLock { _lock: lock, beside: self.beside.clone(), new, kept: false }),
+        let lock = part_folder::open(&path).map_err(failed)?;
+        match try_lock(&lock) {
+            Ok(()) => Ok((lock, new)),
             Err(TryLockError::WouldBlock) => Err(Error::new(
                 ErrorKind::File,
-                format!(
-                    "another build of {} is running; wait until it ends, or choose another output",
-                    self.out.display()
-                ),
+                format!("{other} of {} is running; wait until it ends, or choose another output", self.out.display()),
             )),
             Err(TryLockError::Error(cause)) => Err(failed(cause)),
         }
@@ -190,7 +222,7 @@ impl WorkDir {
     /// A file in the folder next to the result that does not belong to a build.
     fn foreign_beside(&self) -> Option<OsString> {
         let names = fs::read_dir(&self.beside).ok()?.flatten().map(|entry| entry.file_name());
-        names.filter(|name| ![LOCK, JOURNAL, SCRATCH, TEMPORARY].iter().any(|own| name == own)).min()
+        names.filter(|name| ![LOCK, JOURNAL, SCRATCH, TEMPORARY, PARTS].iter().any(|own| name == own)).min()
     }
 
     /// Prepares a new build: removes the files of the previous one, whose paths within the result are `old`. Returns
@@ -260,8 +292,18 @@ impl WorkDir {
     /// # Errors
     /// If they cannot be removed.
     pub fn sweep(&self) -> Result<()> {
-        remove(&self.beside.join(SCRATCH), |path| fs::remove_dir_all(path))?;
-        self.tidy()
+        [SCRATCH, TEMPORARY]
+            .iter()
+            .try_for_each(|name| remove(&self.beside.join(name), |path| fs::remove_dir_all(path)))?;
+        self.drop_parts()
+    }
+
+    /// Removes the journals and locks of parts.
+    ///
+    /// # Errors
+    /// If they cannot be removed.
+    pub fn drop_parts(&self) -> Result<()> {
+        remove(&self.parts(), |path| fs::remove_dir_all(path))
     }
 
     /// Removes incomplete files.
@@ -269,7 +311,7 @@ impl WorkDir {
     /// # Errors
     /// If they cannot be removed.
     pub fn tidy(&self) -> Result<()> {
-        remove(&self.beside.join(TEMPORARY), |path| fs::remove_dir_all(path))
+        remove(&self.temporary, |path| fs::remove_dir_all(path))
     }
 
     /// Creates the folders for files.
@@ -278,19 +320,19 @@ impl WorkDir {
     /// If they cannot be created.
     pub fn furnish(&self) -> Result<()> {
         let make = |path: &Path| fs::create_dir_all(path).map_err(|cause| Error::file("make the folder", path, &cause));
-        make(&self.beside.join(TEMPORARY))?;
+        make(&self.temporary)?;
         if self.file { Ok(()) } else { make(&self.out) }
     }
 
-    /// Makes the result durable: syncs the files at `paths` within it and their folders.
+    /// Makes files durable: syncs them and their folders.
     ///
     /// # Errors
     /// If a file cannot be synced.
-    pub fn sync(&self, paths: &[PathBuf]) -> Result<()> {
+    pub fn sync(&self, files: &[JobFile]) -> Result<()> {
+        let paths: Vec<PathBuf> = files.iter().map(|file| self.path(file)).collect();
         let sync = |path: &PathBuf| {
-            let real = self.result(path);
-            let synced = File::open(&real).and_then(|file| file.sync_all());
-            synced.map_err(|cause| Error::file("write", &real, &cause))
+            let synced = File::open(path).and_then(|file| file.sync_all());
+            synced.map_err(|cause| Error::file("write", path, &cause))
         };
         // Waiting for a disk takes no CPU time, and file systems handle concurrent requests together.
         let next = AtomicUsize::new(0);
@@ -306,9 +348,9 @@ impl WorkDir {
             threads.into_iter().try_for_each(|thread| thread.join().map_err(|_| lost())?)
         })?;
         let mut folders = BTreeSet::new();
-        for path in paths {
-            let real = self.result(path);
-            let within = real.ancestors().skip(1).take_while(|folder| folder.starts_with(&self.out));
+        for path in &paths {
+            let is_ours = |folder: &Path| folder.starts_with(&self.out) || folder.starts_with(&self.beside);
+            let within = path.ancestors().skip(1).take_while(|folder| is_ours(folder));
             folders.extend(within.map(Path::to_path_buf));
         }
         folders.insert(file::folder(&self.out).to_path_buf());

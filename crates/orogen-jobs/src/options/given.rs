@@ -225,6 +225,7 @@ mod tests {
         assert_eq!(given(ValueKind::Size(99), "64X40").unwrap().pair("x"), Some([64.0, 40.0]));
         assert_eq!(given(ValueKind::Size(99), "64").unwrap().numbers("x"), Some(&[64.0][..]));
         assert_eq!(given(ValueKind::Clock, "17:30").unwrap().number("x"), Some(17.5));
+        assert_eq!(given(ValueKind::Part(64), "3/64").unwrap().pair("x"), Some([3.0, 64.0]));
         assert_eq!(given(ValueKind::Choice(WHICH), "All").unwrap().word("x"), Some("all"));
         assert_eq!(given(ValueKind::Color, "ivory").unwrap().color("x"), Some([255, 255, 240]));
         assert_eq!(
@@ -262,6 +263,13 @@ mod tests {
             (ValueKind::Clock, "24:00", "from 00:00 to 23:59"),
             (ValueKind::Clock, "12:60", "from 00:00 to 23:59"),
             (ValueKind::Clock, "12", "from 00:00 to 23:59"),
+            (ValueKind::Part(64), "3", "it must be K/N, such as 3/64 for the third of 64 parts"),
+            (ValueKind::Part(64), "a/b", "it must be K/N"),
+            (ValueKind::Part(64), "-1/4", "it must be K/N"),
+            (ValueKind::Part(64), "0/4", "parts are counted from 1"),
+            (ValueKind::Part(64), "0/0", "parts are counted from 1"),
+            (ValueKind::Part(64), "5/4", "there is no part 5 of 4: the last is 4/4"),
+            (ValueKind::Part(64), "1/65", "at most 64 parts"),
             (ValueKind::Automatic, "-1", "or auto"),
             (ValueKind::Numbers, "1,,2", "separated by commas"),
             (ValueKind::Color, "#12345", "a color must be"),

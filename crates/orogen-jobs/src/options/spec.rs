@@ -110,6 +110,8 @@ pub enum ValueKind {
     Size(usize),
     /// A time of day, such as 17:30.
     Clock,
+    /// One of this many parts at most: `K/N`, from 1/N to N/N.
+    Part(u64),
     /// One of these words.
     Word(&'static [&'static str]),
     /// One of these words, each with a line of help.
@@ -250,6 +252,7 @@ impl OptionSpec {
                 Some(hour) => Ok(Value::Number(hour)),
                 None => Err("a time must be from 00:00 to 23:59, such as 17:30".into()),
             },
+            ValueKind::Part(most) => part(text, most).map(Value::Numbers),
             ValueKind::Word(words) => word(text, words.iter().copied()),
             ValueKind::Choice(choices) => word(text, choices.iter().map(|choice| choice.name)),
             ValueKind::Text => Ok(Value::Text(text.into())),
@@ -316,6 +319,19 @@ fn clock(text: &str) -> Option<f64> {
     let number = |text: &str, end: u32| text.trim().parse::<u32>().ok().filter(|n| *n < end).map(f64::from);
     let (hour, minute) = text.split_once(':')?;
     Some(number(hour, 24)? + number(minute, 60)? / 60.0)
+}
+
+/// Parses the number of a part and the number of all parts.
+fn part(text: &str, most: u64) -> Result<Vec<f64>, String> {
+    let number = |text: &str| text.trim().parse::<u64>().ok();
+    let numbers = text.split_once('/').and_then(|(part, all)| number(part).zip(number(all)));
+    match numbers {
+        Some((part, all)) if (1..=all).contains(&part) && all <= most => Ok(vec![part as f64, all as f64]),
+        Some((0, _)) => Err("parts are counted from 1: the first of 64 parts is 1/64".into()),
+        Some((part, all)) if all <= most => Err(format!("there is no part {part} of {all}: the last is {all}/{all}")),
+        Some(_) => Err(format!("there must be at most {most} parts")),
+        None => Err("it must be K/N, such as 3/64 for the third of 64 parts".into()),
+    }
 }
 
 fn word(text: &str, words: impl Iterator<Item = &'static str> + Clone) -> Result<Value, String> {

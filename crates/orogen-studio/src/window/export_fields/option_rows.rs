@@ -132,9 +132,12 @@ impl OptionRows<'_> {
                 let side = |unit| Component::new("", unit, [1.0, most as f64]);
                 self.numbers(ui, spec, &[side(" ×"), side("")], 2);
             }
-            ValueKind::Numbers | ValueKind::Point | ValueKind::Clock | ValueKind::Text | ValueKind::File => {
-                self.text(ui, spec);
-            }
+            ValueKind::Numbers
+            | ValueKind::Point
+            | ValueKind::Clock
+            | ValueKind::Part(_)
+            | ValueKind::Text
+            | ValueKind::File => self.text(ui, spec),
         }
     }
 
