@@ -143,6 +143,9 @@ def test_files(hills: orogen.World, tmp_path: Path) -> None:
     hills.blocks(tmp_path / "blocks.vox", size=32)
     hills.tilemap(tmp_path / "tiles", size=32)
     hills.build(tmp_path / "heights.tif", cell=120)
+    for part in ["2/2", "1/2"]:
+        hills.build(tmp_path / "parts.tif", cell=120, part=part)
+    assert (tmp_path / "parts.tif").read_bytes() == (tmp_path / "heights.tif").read_bytes()
     assert (tmp_path / "tiles" / "map.tmx").exists() and (tmp_path / "heights.tif").stat().st_size > 1000
 
 

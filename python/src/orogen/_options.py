@@ -387,6 +387,9 @@ class BuildOptions(TypedDict, total=False):
 
     layers: str | None
     """Layers to build, separated by commas [default: height]"""
+    part: str | None
+    """Build only part K of N: N processes, also on other machines, make one result together, and the last one
+    finishes it"""
     tile: int | None
     """Samples along each side of a tile [default: 512; 513 for tiles that share their edges; 256 for an XYZ tree]"""
     tiles: str | None

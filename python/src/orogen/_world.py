@@ -570,6 +570,9 @@ class World:
         """Builds a window of any size: a Cloud-Optimized GeoTIFF (.tif), a Zarr v3 group (.zarr) or a folder of tiles.
 
         A build that was interrupted goes on where it stopped; with `overwrite=True` it begins anew (`orogen build`).
+
+        With `part="3/64"` it makes one of 64 parts. Each part is one call, in any process on any machine that shares
+        the file system, and the call that completes the last part finishes the result.
         """
         return self._write("build", path, _choice(size, window, bounds, cell), overwrite, progress, dict(options))
 

@@ -143,6 +143,9 @@ fn closing(args: &Args, spec: &BuildSpec, report: &Report, seconds: f64) -> Stri
 /// Parts that are named in messages; of more parts, only their number is given.
 const NAMED: usize = 8;
 
+/// Of more parts than this, a report does not list all that are missing.
+const LISTED: usize = 1000;
+
 /// The line about the other parts of a build.
 fn state_of_parts([number, count]: [usize; 2], left: &[usize]) -> String {
     if left.contains(&number) {
@@ -151,8 +154,11 @@ fn state_of_parts([number, count]: [usize; 2], left: &[usize]) -> String {
     let numbers: Vec<String> = left.iter().map(usize::to_string).collect();
     let left = match numbers.as_slice() {
         [] => return "the result is complete\n".to_string(),
-        [one] => format!("part {one} is not"),
-        [init @ .., last] if init.len() < NAMED => format!("parts {} and {last} are not", init.join(", ")),
+        [one] if count <= LISTED => format!("part {one} is not"),
+        [init @ .., last] if init.len() < NAMED && count <= LISTED => {
+            format!("parts {} and {last} are not", init.join(", "))
+        }
+        some if count > LISTED => format!("{} or more parts are not", some.len()),
         all => format!("{} parts are not", all.len()),
     };
     format!("part {number} of {count} is complete; {left}, and the last part finishes the result\n")

@@ -117,7 +117,7 @@ fn killed_at_many_moments_it_ends_with_the_same_bytes() {
 
 fn kill_builds(kills: u32) {
     let mut references = Vec::new();
-    for (name, asked) in BUILDS {
+    for (name, asked) in &BUILDS[..3] {
         let folder = Folder::with_small();
         let begun = Instant::now();
         folder.good(&arguments(name, asked, &[]));
@@ -189,20 +189,20 @@ fn what_parts_say() {
 #[test]
 fn killed_parts_end_with_the_same_bytes() {
     let mut state = 362_436_069u32;
-    for (name, asked) in BUILDS {
+    for (name, asked) in &BUILDS[..3] {
         let folder = Folder::with_small();
         let begun = Instant::now();
         folder.good(&arguments(name, asked, &["-q"]));
         let (expect, usual) = (files(&folder.path(name)), begun.elapsed());
         let folder = Folder::with_small();
-        // In each of three rounds, all parts are started and two of them are killed. Nothing is killed in the last one.
-        for round in 0..4 {
+        // In each of two rounds, all parts are started and two of them are killed. Nothing is killed in the last one.
+        for round in 0..3 {
             let part = |number: usize| {
                 let part = format!("{number}/3");
                 start(&folder, &arguments(name, asked, &["-q", "--threads", "1", "--part", &part]))
             };
             let mut parts: Vec<Child> = [2, 3, 1].map(part).into();
-            for killed in parts.iter_mut().take(if round < 3 { 2 } else { 0 }) {
+            for killed in parts.iter_mut().take(if round < 2 { 2 } else { 0 }) {
                 state ^= state << 13;
                 state ^= state >> 17;
                 state ^= state << 5;
@@ -212,7 +212,7 @@ fn killed_parts_end_with_the_same_bytes() {
             for part in parts {
                 let output = part.wait_with_output().unwrap();
                 let said = String::from_utf8_lossy(&output.stderr);
-                assert!(output.status.success() || round < 3 && output.status.code().is_none(), "{name}: {said}");
+                assert!(output.status.success() || round < 2 && output.status.code().is_none(), "{name}: {said}");
             }
         }
         assert!(files(&folder.path(name)) == expect, "{name}");

@@ -1,7 +1,7 @@
 //! The files by which the parts of a build know of each other: a journal and a lock of each part, and a lock of all.
 //!
-//! A part never waits for another one to do its work. The lock of all parts is held for a moment when a part begins, and
-//! while the result is finished.
+//! A part never waits for another one to do its work. The lock of all parts is held for a moment when a part begins,
+//! and while the result is finished.
 
 use std::io;
 use std::path::{Path, PathBuf};

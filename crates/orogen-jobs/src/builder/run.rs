@@ -58,7 +58,8 @@ pub struct Report {
     pub foreign: Vec<PathBuf>,
     /// Size of the result's tiles, or of the single file, in bytes.
     pub bytes: u64,
-    /// The parts of the build that are not complete, of very many not all; empty if the result is complete.
+    /// The parts of the build that are not complete, of more than 1000 parts perhaps not all of them; empty if the
+    /// result is complete.
     pub left: Vec<usize>,
 }
 
