@@ -2,14 +2,18 @@
 `--check FOLDER` it compares them with those of an installed package.
 
 - `_options.py`: the keywords of the methods of `World`.
-- `_layers.py`: a function for each layer that is derived from heights.
+- `_layers.py` and `_layer_options.py`: a function for each layer that is derived from heights, and its keywords.
+- `_methods.py`: the functions of `orogen.hydrology`, `orogen.erosion` and `orogen.analysis` as methods of arrays.
 """
 
 from __future__ import annotations
 
+import importlib
+import inspect
 import keyword
 import sys
 import textwrap
+from collections.abc import Callable
 from pathlib import Path
 
 from orogen import _orogen
@@ -80,36 +84,137 @@ def {function}(
 
 def layers() -> str:
     """A function for each derived layer."""
+    declared = sorted(_orogen.derived_layers())
+    names = [name.replace("-", "_") for name, *_ in declared]
     head = [
         HEAD,
-        "from collections.abc import Sequence",
-        "from os import PathLike",
-        "from typing import TYPE_CHECKING, TypedDict\n",
+        "from typing import TYPE_CHECKING\n",
         "from orogen._arrays import F32, Samples",
         "from orogen._derived import _layer",
         "from orogen._progress import Progress\n",
         "if TYPE_CHECKING:",
         "    from typing_extensions import Unpack\n",
+        "    from orogen._layer_options import (",
+        *(f"        {keywords_of(name)}," for name in names),
+        "    )\n",
     ]
-    names, parts = [], []
-    for name, text, declared in sorted(_orogen.derived_layers()):
+    shape = "Returns float32 of the shape of `heights`; of several channels, (channels, rows, columns).\n    "
+    parts = [
+        LAYER.format(
+            function=function,
+            options=keywords_of(function),
+            about=described(text, "    ").rstrip(".") + ".",
+            shape=shape,
+            name=name,
+        )
+        for function, (name, text, _) in zip(names, declared, strict=True)
+    ]
+    listed = "__all__ = [\n" + "".join(f'    "{name}",\n' for name in names) + "]\n"
+    return "\n".join(head) + "\n" + listed + "\n\n" + "\n\n".join(parts)
+
+
+def keywords_of(function: str) -> str:
+    """The name of the TypedDict of a layer's keywords."""
+    return function.title().replace("_", "") + "Options"
+
+
+def layer_options() -> str:
+    """The keywords of each derived layer as a TypedDict."""
+    parts = [HEAD + "\nfrom collections.abc import Sequence\nfrom typing import TypedDict\n"]
+    for name, _, declared in sorted(_orogen.derived_layers()):
         function = name.replace("-", "_")
-        names.append(function)
-        options = function.title().replace("_", "") + "Options"
-        lines = [f"class {options}(TypedDict, total=False):", f'    """Keywords of `{function}`."""']
+        lines = [f"class {keywords_of(function)}(TypedDict, total=False):", f'    """Keywords of `{function}`."""']
         for key, kind, default, help in declared:
             usual = f" [default: {default}]" if default and "[default" not in help else ""
             lines.append(f"\n    {key}: {kind} | None")
             lines.append(f'    """{described(about(help) + usual, "    ")}"""')
         parts.append("\n".join(lines) + "\n")
-        shape = "Returns float32 of the shape of `heights`; of several channels, (channels, rows, columns).\n    "
-        parts.append(
-            LAYER.format(
-                function=function, options=options, about=described(text, "    ").rstrip(".") + ".", shape=shape, name=name
-            )
-        )
-    listed = "__all__ = [\n" + "".join(f'    "{name}",\n' for name in names) + "]\n"
-    return "\n".join(head) + "\n" + listed + "\n\n" + "\n\n".join(parts)
+    return "\n\n".join(parts)
+
+
+#: Where methods come from; of two functions with the same name the first one counts.
+MODULES = ("hydrology", "erosion", "analysis")
+
+#: What a method returns: the type, and the function that makes it.
+RESULTS = {
+    "F32": ("xr.DataArray", "_array"),
+    "npt.NDArray[np.uint8]": ("xr.DataArray", "_array"),
+    "npt.NDArray[np.uint32]": ("xr.DataArray", "_array"),
+    "list[Contour]": ("list[Contour]", "_lines"),
+}
+
+
+def methods() -> str:
+    """A method for each function of arrays of heights."""
+    parts, used = {}, set()
+    for name in MODULES:
+        # Imported when `_layers.py` is current.
+        module = importlib.import_module(f"orogen.{name}")
+        for function in module.__all__:
+            found = getattr(module, function)
+            if inspect.isfunction(found) and function not in parts:
+                parts[function] = method(name, function, found)
+                used |= {keywords_of(function)} if "Unpack" in parts[function] else set()
+    head = [
+        HEAD,
+        "from collections.abc import Mapping, Sequence",
+        "from typing import TYPE_CHECKING, Any\n",
+        "from orogen._arrays import Samples",
+        "from orogen._progress import Progress\n",
+        "if TYPE_CHECKING:",
+        "    import xarray as xr",
+        "    from typing_extensions import Unpack\n",
+        "    from orogen._layer_options import (",
+        *(f"        {name}," for name in sorted(used)),
+        "    )",
+        "    from orogen.analysis import Contour\n\n",
+        "class Methods:",
+        '    """The functions of `orogen.hydrology`, `orogen.erosion` and `orogen.analysis` for one array."""\n',
+    ]
+    for result, kind in (("_array", "xr.DataArray"), ("_dataset", "xr.Dataset"), ("_lines", "list[Contour]")):
+        head.append(f"    def {result}(self, function: str, options: Mapping[str, Any]) -> {kind}:")
+        head.append("        raise NotImplementedError\n")
+    return "\n".join(head) + "\n" + "\n".join(parts[name] for name in sorted(parts))
+
+
+def method(module: str, name: str, function: Callable[..., object]) -> str:
+    """A method that calls a function with the array that it belongs to."""
+    signature = inspect.signature(function)
+    result, how = RESULTS.get(signature.return_annotation, ("xr.Dataset", "_dataset"))
+    lines, passed = [f"    def {name}(", "        self,", "        *,"], []
+    for key, parameter in list(signature.parameters.items())[1:]:
+        kind, default = parameter.annotation, parameter.default
+        if parameter.kind is parameter.VAR_KEYWORD:
+            lines.append(f"        **{key}: {kind},")
+            passed.append(f"**{key}")
+            continue
+        if key == "cell":
+            kind, default = "float | None", None
+        if default is inspect.Parameter.empty:
+            usual = ""
+        elif isinstance(default, float) and default == float("inf"):
+            usual = ' = float("inf")'
+        else:
+            usual = f" = {default!r}"
+        lines.append(f"        {key}: {kind}{usual},")
+        passed.append(f'"{key}": {key}')
+    text = inspect.getdoc(function) or ""
+    paragraphs = [part for part in text.split("\n\n") if not part.startswith("Returns float32 of the shape")]
+    wrapped = [part if "\n    " in part else textwrap.fill(part, 109) for part in paragraphs]
+    doc = textwrap.indent("\n\n".join(wrapped), " " * 8).strip()
+    end = "\n        " if "\n" in doc else ""
+    lines.append(f"    ) -> {result}:")
+    lines.append(f'        """{doc}{end}"""')
+    call = f'        return self.{how}("{module}.{name}", {{{", ".join(passed)}}})'
+    if len(call) > 120:
+        inner = "".join(f"            {part},\n" for part in passed)
+        call = f'        given = {{\n{inner}        }}\n        return self.{how}("{module}.{name}", given)'
+    lines.append(call + "\n")
+    return "\n".join(lines)
+
+
+#: The generated files; a file comes after those that it is made from.
+FILES = {"_options.py": options, "_layers.py": layers, "_layer_options.py": layer_options, "_methods.py": methods}
 
 
 def main(arguments: list[str]) -> int:
@@ -117,8 +222,8 @@ def main(arguments: list[str]) -> int:
     is_check = arguments[:1] == ["--check"]
     package = Path(arguments[1]) if is_check else PACKAGE
     stale = []
-    for name, text in (("_options.py", options()), ("_layers.py", layers())):
-        path = package / name
+    for name, made in FILES.items():
+        path, text = package / name, made()
         if not path.exists() or path.read_text() != text:
             stale.append(name)
             if not is_check:

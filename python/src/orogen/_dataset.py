@@ -7,6 +7,8 @@ from typing import Any, Protocol
 
 import xarray as xr
 
+# Arrays of worlds have the methods without another import.
+import orogen._accessor  # noqa: F401
 from orogen._arrays import F64
 
 

@@ -5,25 +5,35 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
+from orogen import _orogen
 from orogen._arrays import F32, Samples, heights as _heights
-from orogen._progress import Progress
+from orogen._progress import Progress, listener
 
 
 def _layer(
     heights: Samples, layer: str, cell: float, nodata: float | None, progress: Progress, options: Mapping[str, Any]
 ) -> F32:
-    """A derived layer of the world that consists of these heights."""
-    import warnings
-
-    import numpy as np
-
-    from orogen._world import World
-
+    """A derived layer of the world of these heights; missing ones are interpolated for their neighbors."""
     data = _heights(heights, nodata)
-    with warnings.catch_warnings():
-        # Neighbors of missing samples see interpolated heights.
-        warnings.simplefilter("ignore")
-        world = World(data, cell=cell, cache=False)
-    made: F32 = world.window(layer, window=(0, 0, data.shape[1], data.shape[0]), progress=progress, **options)
+    # The native world tells no warnings: filters of warnings cannot be changed while threads run.
+    world = _orogen.World(
+        source=None,
+        text=None,
+        heights=data,
+        cell=cell,
+        parameters=[],
+        seed=None,
+        crs=None,
+        origin=None,
+        threads=None,
+        memory=None,
+        cache=None,
+    )
+    part, _ = world.view(((0, 0, data.shape[1], data.shape[0]), None, None, None))
+    with listener(progress) as heard:
+        channels = world.read([layer], part, dict(options), heard)
+    made: F32 = channels[0] if len(channels) == 1 else np.stack(channels)
     made[..., np.isnan(data)] = np.nan
     return made

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from os import PathLike
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING
 
 from orogen._arrays import F32, Samples
 from orogen._derived import _layer
@@ -12,6 +10,36 @@ from orogen._progress import Progress
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
+
+    from orogen._layer_options import (
+        AlbedoOptions,
+        AspectOptions,
+        CurvatureOptions,
+        DrainageAreaOptions,
+        FilledOptions,
+        FlowDirectionOptions,
+        FlowDistanceOptions,
+        HeightAboveDrainageOptions,
+        HillshadeOptions,
+        InsolationOptions,
+        LandformsOptions,
+        LsFactorOptions,
+        NormalOptions,
+        OcclusionOptions,
+        RoughnessOptions,
+        SlopeOptions,
+        SlopePositionOptions,
+        SoilDepthOptions,
+        SplatOptions,
+        StrahlerOptions,
+        StreamDistanceOptions,
+        StreamPowerIndexOptions,
+        TpiOptions,
+        TriOptions,
+        ViewshedOptions,
+        WatershedOptions,
+        WetnessOptions,
+    )
 
 __all__ = [
     "albedo",
@@ -44,10 +72,6 @@ __all__ = [
 ]
 
 
-class AlbedoOptions(TypedDict, total=False):
-    """Keywords of `albedo`."""
-
-
 def albedo(
     heights: Samples,
     *,
@@ -61,10 +85,6 @@ def albedo(
     Returns float32 of the shape of `heights`; of several channels, (channels, rows, columns).
     """
     return _layer(heights, "albedo", cell, nodata, progress, options)
-
-
-class AspectOptions(TypedDict, total=False):
-    """Keywords of `aspect`."""
 
 
 def aspect(
@@ -82,10 +102,6 @@ def aspect(
     return _layer(heights, "aspect", cell, nodata, progress, options)
 
 
-class CurvatureOptions(TypedDict, total=False):
-    """Keywords of `curvature`."""
-
-
 def curvature(
     heights: Samples,
     *,
@@ -99,10 +115,6 @@ def curvature(
     Returns float32 of the shape of `heights`; of several channels, (channels, rows, columns).
     """
     return _layer(heights, "curvature", cell, nodata, progress, options)
-
-
-class DrainageAreaOptions(TypedDict, total=False):
-    """Keywords of `drainage_area`."""
 
 
 def drainage_area(
@@ -121,10 +133,6 @@ def drainage_area(
     return _layer(heights, "drainage-area", cell, nodata, progress, options)
 
 
-class FilledOptions(TypedDict, total=False):
-    """Keywords of `filled`."""
-
-
 def filled(
     heights: Samples,
     *,
@@ -138,14 +146,6 @@ def filled(
     Returns float32 of the shape of `heights`; of several channels, (channels, rows, columns).
     """
     return _layer(heights, "filled", cell, nodata, progress, options)
-
-
-class FlowDirectionOptions(TypedDict, total=False):
-    """Keywords of `flow_direction`."""
-
-    codes: str | None
-    """Encoding of flow directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or pcraster
-    [default: esri]"""
 
 
 def flow_direction(
@@ -163,13 +163,6 @@ def flow_direction(
     return _layer(heights, "flow-direction", cell, nodata, progress, options)
 
 
-class FlowDistanceOptions(TypedDict, total=False):
-    """Keywords of `flow_distance`."""
-
-    stream: float | None
-    """Minimum drainage area of streams, in m^2 [default: 1e6]"""
-
-
 def flow_distance(
     heights: Samples,
     *,
@@ -185,13 +178,6 @@ def flow_distance(
     return _layer(heights, "flow-distance", cell, nodata, progress, options)
 
 
-class HeightAboveDrainageOptions(TypedDict, total=False):
-    """Keywords of `height_above_drainage`."""
-
-    stream: float | None
-    """Minimum drainage area of streams, in m^2 [default: 1e6]"""
-
-
 def height_above_drainage(
     heights: Samples,
     *,
@@ -205,19 +191,6 @@ def height_above_drainage(
     Returns float32 of the shape of `heights`; of several channels, (channels, rows, columns).
     """
     return _layer(heights, "height-above-drainage", cell, nodata, progress, options)
-
-
-class HillshadeOptions(TypedDict, total=False):
-    """Keywords of `hillshade`."""
-
-    azimuth: float | None
-    """Direction that the light of a hillshade comes from, clockwise from north, in degrees [default: 315]"""
-
-    altitude: float | None
-    """Height of the light of a hillshade above the horizon (90: straight above), in degrees [default: 45]"""
-
-    z_factor: float | None
-    """Factor of the heights before a hillshade is computed [default: 1]"""
 
 
 def hillshade(
@@ -236,23 +209,6 @@ def hillshade(
     return _layer(heights, "hillshade", cell, nodata, progress, options)
 
 
-class InsolationOptions(TypedDict, total=False):
-    """Keywords of `insolation`."""
-
-    day: int | None
-    """Day of the year for insolation, 1 to 365 [default: the whole year]"""
-
-    season: str | None
-    """Season for insolation, from equinox to solstice or solstice to equinox at the latitude: spring, summer, autumn
-    or winter"""
-
-    latitude: float | None
-    """Latitude in degrees, positive in the north [default: that of a file of heights, else 45]"""
-
-    turbidity: float | None
-    """Linke turbidity of the air: 1 clean and dry, 6 hazy [default: 3]"""
-
-
 def insolation(
     heights: Samples,
     *,
@@ -267,16 +223,6 @@ def insolation(
     Returns float32 of the shape of `heights`; of several channels, (channels, rows, columns).
     """
     return _layer(heights, "insolation", cell, nodata, progress, options)
-
-
-class LandformsOptions(TypedDict, total=False):
-    """Keywords of `landforms`."""
-
-    reach: float | None
-    """Search radius of geomorphons, in metres [default: 500]"""
-
-    flat: float | None
-    """Flatness threshold of geomorphons, in degrees [default: 1]"""
 
 
 def landforms(
@@ -295,10 +241,6 @@ def landforms(
     return _layer(heights, "landforms", cell, nodata, progress, options)
 
 
-class LsFactorOptions(TypedDict, total=False):
-    """Keywords of `ls_factor`."""
-
-
 def ls_factor(
     heights: Samples,
     *,
@@ -312,10 +254,6 @@ def ls_factor(
     Returns float32 of the shape of `heights`; of several channels, (channels, rows, columns).
     """
     return _layer(heights, "ls-factor", cell, nodata, progress, options)
-
-
-class NormalOptions(TypedDict, total=False):
-    """Keywords of `normal`."""
 
 
 def normal(
@@ -333,10 +271,6 @@ def normal(
     return _layer(heights, "normal", cell, nodata, progress, options)
 
 
-class OcclusionOptions(TypedDict, total=False):
-    """Keywords of `occlusion`."""
-
-
 def occlusion(
     heights: Samples,
     *,
@@ -350,10 +284,6 @@ def occlusion(
     Returns float32 of the shape of `heights`; of several channels, (channels, rows, columns).
     """
     return _layer(heights, "occlusion", cell, nodata, progress, options)
-
-
-class RoughnessOptions(TypedDict, total=False):
-    """Keywords of `roughness`."""
 
 
 def roughness(
@@ -371,10 +301,6 @@ def roughness(
     return _layer(heights, "roughness", cell, nodata, progress, options)
 
 
-class SlopeOptions(TypedDict, total=False):
-    """Keywords of `slope`."""
-
-
 def slope(
     heights: Samples,
     *,
@@ -388,13 +314,6 @@ def slope(
     Returns float32 of the shape of `heights`; of several channels, (channels, rows, columns).
     """
     return _layer(heights, "slope", cell, nodata, progress, options)
-
-
-class SlopePositionOptions(TypedDict, total=False):
-    """Keywords of `slope_position`."""
-
-    disc: float | None
-    """Radius of the disc, in metres [default: 300]"""
 
 
 def slope_position(
@@ -412,10 +331,6 @@ def slope_position(
     return _layer(heights, "slope-position", cell, nodata, progress, options)
 
 
-class SoilDepthOptions(TypedDict, total=False):
-    """Keywords of `soil_depth`."""
-
-
 def soil_depth(
     heights: Samples,
     *,
@@ -429,10 +344,6 @@ def soil_depth(
     Returns float32 of the shape of `heights`; of several channels, (channels, rows, columns).
     """
     return _layer(heights, "soil-depth", cell, nodata, progress, options)
-
-
-class SplatOptions(TypedDict, total=False):
-    """Keywords of `splat`."""
 
 
 def splat(
@@ -450,13 +361,6 @@ def splat(
     return _layer(heights, "splat", cell, nodata, progress, options)
 
 
-class StrahlerOptions(TypedDict, total=False):
-    """Keywords of `strahler`."""
-
-    stream: float | None
-    """Minimum drainage area of streams, in m^2 [default: 1e6]"""
-
-
 def strahler(
     heights: Samples,
     *,
@@ -470,13 +374,6 @@ def strahler(
     Returns float32 of the shape of `heights`; of several channels, (channels, rows, columns).
     """
     return _layer(heights, "strahler", cell, nodata, progress, options)
-
-
-class StreamDistanceOptions(TypedDict, total=False):
-    """Keywords of `stream_distance`."""
-
-    stream: float | None
-    """Minimum drainage area of streams, in m^2 [default: 1e6]"""
 
 
 def stream_distance(
@@ -494,10 +391,6 @@ def stream_distance(
     return _layer(heights, "stream-distance", cell, nodata, progress, options)
 
 
-class StreamPowerIndexOptions(TypedDict, total=False):
-    """Keywords of `stream_power_index`."""
-
-
 def stream_power_index(
     heights: Samples,
     *,
@@ -511,13 +404,6 @@ def stream_power_index(
     Returns float32 of the shape of `heights`; of several channels, (channels, rows, columns).
     """
     return _layer(heights, "stream-power-index", cell, nodata, progress, options)
-
-
-class TpiOptions(TypedDict, total=False):
-    """Keywords of `tpi`."""
-
-    disc: float | None
-    """Radius of the disc, in metres [default: 300]"""
 
 
 def tpi(
@@ -535,10 +421,6 @@ def tpi(
     return _layer(heights, "tpi", cell, nodata, progress, options)
 
 
-class TriOptions(TypedDict, total=False):
-    """Keywords of `tri`."""
-
-
 def tri(
     heights: Samples,
     *,
@@ -552,26 +434,6 @@ def tri(
     Returns float32 of the shape of `heights`; of several channels, (channels, rows, columns).
     """
     return _layer(heights, "tri", cell, nodata, progress, options)
-
-
-class ViewshedOptions(TypedDict, total=False):
-    """Keywords of `viewshed`."""
-
-    observer: Sequence[float] | None
-    """Position of the observer of a viewshed: metres east and south of the world's north-west corner"""
-
-    observer_height: float | None
-    """Height of the observer's eye above the ground, in metres [default: 1.75]"""
-
-    target_height: float | None
-    """Height of the target above the ground, in metres [default: 0]"""
-
-    radius: float | None
-    """Maximum distance of a viewshed, in metres [default: the whole world]"""
-
-    refraction: float | None
-    """Take the earth's curvature into account, with this refraction coefficient, such as 0.13 [default: a flat
-    earth]"""
 
 
 def viewshed(
@@ -589,10 +451,6 @@ def viewshed(
     return _layer(heights, "viewshed", cell, nodata, progress, options)
 
 
-class WatershedOptions(TypedDict, total=False):
-    """Keywords of `watershed`."""
-
-
 def watershed(
     heights: Samples,
     *,
@@ -606,10 +464,6 @@ def watershed(
     Returns float32 of the shape of `heights`; of several channels, (channels, rows, columns).
     """
     return _layer(heights, "watershed", cell, nodata, progress, options)
-
-
-class WetnessOptions(TypedDict, total=False):
-    """Keywords of `wetness`."""
 
 
 def wetness(
