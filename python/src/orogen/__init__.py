@@ -12,9 +12,16 @@ Arrays have row 0 in the north and column 0 in the west; heights are float32 met
 - `orogen.errors`: exceptions.
 """
 
-from orogen import analysis, erosion, errors, hydrology, noise
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from orogen._orogen import __version__
-from orogen._world import Objects, Parameter, Sampler, Window, World, fit, presets
+
+if TYPE_CHECKING:
+    from orogen import analysis, erosion, errors, hydrology, noise
+    from orogen._world import Objects, Parameter, Sampler, Window, World, fit, presets
 
 __all__ = [
     "Objects",
@@ -31,3 +38,18 @@ __all__ = [
     "noise",
     "presets",
 ]
+
+_MODULES = frozenset({"analysis", "erosion", "errors", "hydrology", "noise"})
+
+
+def __getattr__(name: str) -> Any:
+    # Loaded at first use: NumPy takes most of the time of an import, and few programs use every module.
+    if name not in __all__:
+        raise AttributeError(f"module 'orogen' has no attribute {name!r}")
+    found = import_module(f"orogen.{name}") if name in _MODULES else getattr(import_module("orogen._world"), name)
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
