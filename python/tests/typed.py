@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 import orogen
+import xarray as xr
 from orogen import analysis, erosion, hydrology, noise
+from orogen.xarray import OrogenAccessor
 
 
 def heights() -> npt.NDArray[np.float32]:
@@ -34,4 +36,14 @@ def arrays() -> npt.NDArray[np.float32]:
     labels: npt.NDArray[np.uint32] = water.labels
     area: npt.NDArray[np.float32] = hydrology.accumulate(eroded, cell=10.0)
     assert labels.shape == (64, 64) and lines[0].points.shape[1] == 2
-    return np.stack([analysis.slope(eroded, cell=10.0), area, value, dx, dy])
+    slope: npt.NDArray[np.float32] = analysis.slope(eroded, cell=10.0)
+    return slope + area + value + dx + dy
+
+
+def methods(height: xr.DataArray) -> xr.DataArray:
+    land = OrogenAccessor(height)
+    water: xr.Dataset = land.lakes(area=500)
+    lines: list[analysis.Contour] = land.contours(interval=20)
+    assert lines and "surface" in water
+    shade: xr.DataArray = land.hillshade(azimuth=315.0)
+    return OrogenAccessor(shade).accumulate(rain=height)

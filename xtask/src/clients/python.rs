@@ -31,7 +31,7 @@ pub fn check_wheel() -> Result {
     test(&venv, &site)
 }
 
-/// The tests of the package, its generated files and its types.
+/// The tests of the package, its generated files and its types, by two type checkers.
 fn test(venv: &Path, site: &Path) -> Result {
     let inside = |args: &[&str]| -> Command {
         let mut command = program(venv.join("bin/python"));
@@ -51,6 +51,8 @@ fn test(venv: &Path, site: &Path) -> Result {
         .arg(&settings)
         .arg(python.join("tests/typed.py")))?;
     sh(&mut inside(&["-m", "mypy", "--strict", "--no-incremental", "-p", "orogen"]))?;
+    let mut pyright = program(install::node_bin().join("pyright"));
+    sh(pyright.arg("--project").arg(&settings).arg("--pythonpath").arg(venv.join("bin/python")))?;
     sh(&mut inside(&["-m", "mypy.stubtest", "orogen._orogen"]))
 }
 
