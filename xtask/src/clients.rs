@@ -177,6 +177,8 @@ const CLIENTS: &[Client] = &[
             NUMPY,
             "xarray==2026.9.0",
             "dask==2026.8.0",
+            "distributed==2026.8.0",
+            "zarr==3.1.6",
             "matplotlib==3.11.2",
             "nbclient==0.11.0",
             "ipykernel==7.4.0",
