@@ -218,6 +218,34 @@ fn bands_of_many_columns_keep_their_memory() {
     }
 }
 
+/// The heights of the file need 108 MiB.
+#[test]
+#[cfg(target_os = "linux")]
+fn windows_of_a_large_file_keep_their_memory() {
+    let folder = Folder::with_small();
+    folder.good(&["export", "small.toml", "-o", "dem.tif", "--size", "6144", "-q"]);
+    let cell = "[world]\ncell = 0.1\n[nodes.place]\nop = \"dem\"\npath = \"dem.tif\"\n";
+    let wide = "[nodes.wide]\nop = \"blur\"\nsource = \"place\"\nradius = 20\n";
+    let outputs = "[outputs]\nheight = \"place\"\nwide = \"wide\"\n";
+    folder.write("place.toml", format!("orogen = 1\n{cell}{wide}{outputs}"));
+    let window = ["--window", "3000,2500,200,200", "--memory", "64MiB", "-q"];
+    for (source, layer, out) in [
+        ("place.toml", "height", "a.tif"),
+        ("place.toml", "wide", "b.tif"),
+        ("place.toml", "slope", "c.tif"),
+        ("dem.tif", "height", "d.tif"),
+        ("dem.tif", "curvature", "e.tif"),
+    ] {
+        let arguments = [&["export", source, "--layer", layer, "-o", out][..], &window].concat();
+        let (code, said, peak) = measured(folder.command(&arguments));
+        assert!(code == 0 && peak < 64 << 20, "{source} {layer}: {code}, {peak} bytes: {said}");
+    }
+    // Drainage depends on all heights.
+    let arguments = [&["export", "dem.tif", "--layer", "drainage-area", "-o", "f.tif"][..], &window].concat();
+    let (code, said, peak) = measured(folder.command(&arguments));
+    assert!(code == 1 && said.contains("need 108 MiB") && peak < 64 << 20, "{code}, {peak} bytes: {said}");
+}
+
 #[test]
 #[cfg(target_os = "linux")]
 fn what_is_measured_on_disk_is_what_is_measured_in_memory() {
