@@ -10,7 +10,7 @@ Arrays have row 0 in the north and column 0 in the west; heights are float32 met
 - `orogen.noise`: noise at positions.
 - `orogen.hydrology`, `orogen.erosion`, `orogen.analysis`: algorithms on 2-D arrays.
 - `orogen.errors`: exceptions.
-- `orogen.xarray`: methods of xarray's arrays; `orogen.cluster`: builds by a Dask cluster. These two are imported by name.
+- `orogen.xarray`: methods of xarray's arrays; `orogen.cluster`: builds by a Dask cluster. Both are imported by name.
 """
 
 from __future__ import annotations
