@@ -79,7 +79,14 @@ const CASES: &[Case] = &[
         samples: None,
     },
     Case { name: "slope, 2048 x 2048", part: "slope", rust: sloped, overhead: 1.05, faster: 3.0, samples: None },
-    Case { name: "hillshade, 2048 x 2048", part: "hillshade", rust: shaded, overhead: 1.05, faster: 3.0, samples: None },
+    Case {
+        name: "hillshade, 2048 x 2048",
+        part: "hillshade",
+        rust: shaded,
+        overhead: 1.05,
+        faster: 3.0,
+        samples: None,
+    },
     Case {
         name: "fBm of Perlin noise, 6 octaves",
         part: "perlin",
@@ -111,11 +118,8 @@ pub fn run(options: &Options) -> Result<Value, String> {
 
 fn figures(options: &Options, folder: &Path) -> Result<Vec<Figure>, String> {
     let heights = ground(SIDE)?;
-    let arguments = [
-        ground_file(folder, &heights)?.display().to_string(),
-        CELL.to_string(),
-        options.repetitions.to_string(),
-    ];
+    let arguments =
+        [ground_file(folder, &heights)?.display().to_string(), CELL.to_string(), options.repetitions.to_string()];
     let parts = |(package, variable): (&'static str, &str)| -> Result<Option<Parts>, String> {
         let Some(python) = std::env::var_os(variable) else { return Ok(None) };
         eprintln!("{package} ...");

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import orogen
 import pytest
-from orogen import _orogen, cluster
+from orogen import cluster
 
 distributed = pytest.importorskip("distributed")
 zarr = pytest.importorskip("zarr")
@@ -27,8 +27,6 @@ RECIPE = {
 # What Dask and zarr warn of is not about this package.
 pytestmark = pytest.mark.filterwarnings("ignore")
 
-PARTS = "part" in {name for name, *_ in _orogen.declared("build")}
-needs_parts = pytest.mark.skipif(not PARTS, reason="the native part cannot build parts")
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +46,6 @@ def files(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-@needs_parts
 def test_a_cluster_makes_the_same_files(client: Any, world: orogen.World, tmp_path: Path) -> None:
     options: dict[str, Any] = {"layers": ["height", "rough"], "tile": 32}
     world.build(tmp_path / "one.zarr", layers="height,rough", tile=32)
@@ -60,7 +57,6 @@ def test_a_cluster_makes_the_same_files(client: Any, world: orogen.World, tmp_pa
     assert cluster.build(world, tmp_path / "many.zarr", client=client, parts=7, **options) == made
 
 
-@needs_parts
 def test_parts_of_a_killed_worker_are_made_by_others(client: Any, world: orogen.World, tmp_path: Path) -> None:
     options: dict[str, Any] = {"tile": 16, "cell": 10.0}
     world.build(tmp_path / "one.zarr", **options)
@@ -123,10 +119,6 @@ def test_a_store_is_verified(client: Any, world: orogen.World, tmp_path: Path) -
 
 
 def test_mistakes_are_refused(client: Any, world: orogen.World, tmp_path: Path) -> None:
-    if not PARTS:
-        with pytest.raises(orogen.errors.RequestError, match="parts"):
-            cluster.build(world, tmp_path / "a.zarr", client=client)
-        return
     with pytest.raises(orogen.errors.RequestError, match="parts"):
         cluster.build(world, tmp_path / "a.zarr", client=client, parts=0)
     with pytest.raises(orogen.errors.RequestError, match="layer"):

@@ -23,7 +23,6 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from orogen import _orogen
 from orogen._progress import Progress, listener
 from orogen._world import PathLike, Window, World, _restored
 from orogen.errors import FileError, RequestError
@@ -77,8 +76,6 @@ def build(
     RequestError
         If there is no cluster, or the build is not possible.
     """
-    if "part" not in {name for name, *_ in _orogen.declared("build")}:
-        raise RequestError("this version of the native part cannot build parts")
     client = _client(client)
     if "overwrite" in options:
         raise RequestError("a build in parts goes on with what is there; remove the result to build it anew")

@@ -1,6 +1,6 @@
 //! `orogen build`: killed, interrupted, or without disk space, it has the same bytes in the end.
 
-use crate::harness::{Folder, Outcome, Running};
+use crate::harness::{Folder, Outcome, Running, until};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -259,7 +259,7 @@ fn ctrl_c_stops_cleanly() {
     let folder = with_slow();
     for (signal, expect) in [("-INT", 130), ("-TERM", 143)] {
         let mut build = Running::start_and_wait(&folder, &arguments("a.zarr", &SLOW, &["--resume"]));
-        assert!(folder.path("a.zarr/height").exists());
+        until("the folder of the layer", || folder.path("a.zarr/height").exists());
         build.signal(signal);
         let (code, said) = build.ended();
         assert_eq!(code, Some(expect), "{said:?}");
