@@ -24,7 +24,7 @@ use super::zarr::Zarr;
 use orogen_engine::world::World;
 use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::error::{Error, ErrorKind, Result};
-use orogen_grid::grid::Grid;
+use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_io::file::Output;
 use orogen_io::fs;
@@ -107,8 +107,11 @@ impl<'a> Build<'a> {
         };
         let identity = Identity::of(world, spec, tile)?;
         let layers: Vec<&str> = spec.layers.iter().map(String::as_str).collect();
-        // Rejects invalid windows first.
-        world.plan(&layers, &spec.window)?;
+        // Rejects invalid windows and layers first. The whole window may have more samples than can be made at once.
+        world.check(&spec.window)?;
+        for corner in corners(&spec.window) {
+            world.plan(&layers, &corner)?;
+        }
         let target = target(world, &identity, spec.form)?;
         let stages = target.stages();
         let block = Block::fitting(world, target.as_ref(), stages[0], &layers)?;
@@ -479,4 +482,10 @@ fn target(world: &World, identity: &Identity, form: Form) -> Result<Box<dyn Buil
         Form::Tiles(samples) => Box::new(Folder::new(identity, samples, about, sea_level)?),
         Form::Xyz(encoding) => Box::new(Tree::new(world, identity, encoding)?),
     })
+}
+
+/// The first and the last sample of a window.
+fn corners(window: &Window) -> [Window; 2] {
+    let one = Window { width: 1, height: 1, ..*window };
+    [one, Window { x: window.right() - 1, y: window.bottom() - 1, ..one }]
 }

@@ -226,3 +226,24 @@ fn a_part_runs_once_at_a_time() {
     drop(held);
     assert_eq!(part_of(&world, &spec, &folder.out(), [2, 2]).unwrap().left, [0usize; 0]);
 }
+
+#[test]
+fn worlds_of_any_size_are_built_tile_by_tile() {
+    let recipe = Recipe::parse(
+        "orogen = 1\n[world]\nseed = 3\n[nodes.land]\nop = \"continents\"\n[outputs]\nheight = \"land\"\n",
+        "endless",
+    );
+    let options = Options { threads: Some(2), memory: Budget::of(Some(1 << 30)), ..Options::default() };
+    let world = World::with_options(recipe.unwrap(), options).unwrap();
+    // A planet: 40 000 km x 20 000 km at 30 m.
+    let window = Window::new(1_333_333, 666_667, 30.0).at(-600_000, -300_000);
+    let spec = BuildSpec { form: Form::Zarr, window, tile: Some(2048), layers: vec!["height".into()], part: None };
+    let folder = Folder::new();
+    let output = OutputPolicy::default().output(folder.out()).unwrap();
+    let spec = spec.with_part(80_000, 212_000);
+    let build = Build::new(&world, &spec, &output).unwrap();
+    let (tiles, samples) = build.tiles();
+    assert!(tiles == 1 && samples <= 2048 * 2048, "{tiles} {samples}");
+    assert_eq!(build.max_parts(), 652 * 326);
+    assert!(build.memory() <= 1 << 30);
+}
