@@ -49,9 +49,12 @@ impl Build<'_> {
                 break entered;
             }
         };
-        let mut report = self.make_share(part, &folder, &begun, progress)?;
-        self.finish_parts(part, &folder, &mut report, progress)?;
-        drop(running);
+        let report = {
+            let _running = running;
+            let mut report = self.make_share(part, &folder, &begun, progress)?;
+            self.finish_parts(part, &folder, &mut report, progress)?;
+            report
+        };
         if report.left.is_empty() {
             // Files that another part has just opened may stay; whoever runs next removes them.
             let _ = self.work_dir.sweep();
