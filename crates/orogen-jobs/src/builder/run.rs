@@ -165,9 +165,8 @@ impl<'a> Build<'a> {
     }
 
     /// The maximum number of parts that have something to do.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn max_parts(&self) -> usize {
+    #[cfg(test)]
+    pub(super) fn max_parts(&self) -> usize {
         self.stages[0].len()
     }
 
