@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import numpy.typing as npt
 import orogen
@@ -23,7 +25,8 @@ def files(world: orogen.World) -> str:
     world.export("alpine.tif", "flow", size=64)
     world.map("alpine.pdf", contours=200.0, title="Alps")
     world.render("alpine.png", size=(640, 360), camera=(200, 24), haze=0.5)
-    return world.export("alpine.png", bits="16").name
+    made: Path = world.export(Path("alpine.png"), bits="16")
+    return world.export("alpine.png") + made.name
 
 
 def arrays() -> npt.NDArray[np.float32]:

@@ -4,8 +4,12 @@ use std::path::Path;
 
 use orogen::{Error, ErrorKind, grid::words};
 
-/// Free space, in bytes, on the disk that contains or would contain `path`; `None` if the system does not provide it.
+/// Free space, in bytes, on the disk that contains or would contain `path`; `None` if the system does not provide it,
+/// and for objects.
 pub fn free_at(path: &Path) -> Option<u64> {
+    if orogen::io::fs::is_remote(path) {
+        return None;
+    }
     let real = path.ancestors().find_map(|path| match path.as_os_str().is_empty() {
         true => Path::new(".").canonicalize().ok(),
         false => path.canonicalize().ok(),

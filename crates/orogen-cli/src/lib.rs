@@ -45,6 +45,8 @@ pub fn run() -> ExitCode {
 /// Runs the command with these words; the first is the name of the program.
 #[must_use]
 pub fn run_with(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
+    #[cfg(feature = "remote")]
+    orogen::remote::mount();
     match cli::Cli::try_parse_from(words).map_or_else(usage::answer, cli::Cli::run) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

@@ -1,5 +1,5 @@
-//! File system access. With the feature `fs` this is `std::fs`. Without it the module has the same items, but each
-//! fails with [`std::io::ErrorKind::Unsupported`].
+//! File system access. With the feature `fs` this is `std::fs`, extended by [objects](objects) of a store such as S3.
+//! Without it the module has the same items, but each fails with [`std::io::ErrorKind::Unsupported`].
 //!
 //! All libraries of Orogen access files through this module. A host without a file system can therefore run everything
 //! that needs no files, and gets an error that states the reason for everything else.
@@ -8,11 +8,17 @@ use std::path::{Path, PathBuf};
 
 #[cfg(not(feature = "fs"))]
 mod absent;
+#[cfg(feature = "fs")]
+pub mod objects;
+#[cfg(feature = "fs")]
+mod present;
 
 #[cfg(not(feature = "fs"))]
 pub use absent::*;
 #[cfg(feature = "fs")]
-pub use std::fs::*;
+pub use objects::{is_read_only, is_remote};
+#[cfg(feature = "fs")]
+pub use present::*;
 
 /// Whether this build has a file system (the feature `fs`).
 pub const AVAILABLE: bool = cfg!(feature = "fs");
@@ -20,7 +26,11 @@ pub const AVAILABLE: bool = cfg!(feature = "fs");
 /// Whether a file exists at `path`; links are followed.
 #[must_use]
 pub fn is_file(path: &Path) -> bool {
-    metadata(path).is_ok_and(|there| there.is_file())
+    match is_remote(path) {
+        // Without looking for a folder of that name.
+        true => File::open(path).is_ok(),
+        false => metadata(path).is_ok_and(|there| there.is_file()),
+    }
 }
 
 /// Whether a folder exists at `path`; links are followed.
@@ -33,6 +43,12 @@ pub fn is_dir(path: &Path) -> bool {
 #[must_use]
 pub fn is_present(path: &Path) -> bool {
     metadata(path).is_ok()
+}
+
+/// A folder for temporary files that end up in `folder`: itself, or the system's temporary folder for objects.
+#[must_use]
+pub fn temporary_folder_for(folder: &Path) -> PathBuf {
+    if is_remote(folder) { temporary_folder() } else { folder.to_path_buf() }
 }
 
 /// The system's temporary folder; an empty path on a host without files.

@@ -86,9 +86,9 @@ pub struct PositionedFile {
 impl PositionedFile {
     /// Wraps an open file.
     #[must_use]
-    pub fn new(file: File) -> PositionedFile {
+    pub fn new(file: impl Into<File>) -> PositionedFile {
         PositionedFile {
-            file,
+            file: file.into(),
             #[cfg(not(all(feature = "fs", any(unix, windows))))]
             position: std::sync::Mutex::default(),
         }
@@ -102,42 +102,14 @@ impl PositionedFile {
         self.write_at(at, bytes)
     }
 
-    #[cfg(all(feature = "fs", unix))]
+    #[cfg(all(feature = "fs", any(unix, windows)))]
     fn write_at(&self, at: u64, bytes: &[u8]) -> io::Result<()> {
-        std::os::unix::fs::FileExt::write_all_at(&self.file, bytes, at)
+        self.file.write_all_at(at, bytes)
     }
 
-    #[cfg(all(feature = "fs", unix))]
+    #[cfg(all(feature = "fs", any(unix, windows)))]
     fn fill_from(&self, at: u64, bytes: &mut [u8]) -> io::Result<()> {
-        std::os::unix::fs::FileExt::read_exact_at(&self.file, bytes, at)
-    }
-
-    #[cfg(all(feature = "fs", windows))]
-    fn write_at(&self, at: u64, bytes: &[u8]) -> io::Result<()> {
-        let mut done = 0;
-        while done < bytes.len() {
-            match std::os::windows::fs::FileExt::seek_write(&self.file, &bytes[done..], at + done as u64) {
-                Ok(0) => return Err(io::ErrorKind::WriteZero.into()),
-                Ok(count) => done += count,
-                Err(cause) if cause.kind() == io::ErrorKind::Interrupted => {}
-                Err(cause) => return Err(cause),
-            }
-        }
-        Ok(())
-    }
-
-    #[cfg(all(feature = "fs", windows))]
-    fn fill_from(&self, at: u64, bytes: &mut [u8]) -> io::Result<()> {
-        let mut done = 0;
-        while done < bytes.len() {
-            match std::os::windows::fs::FileExt::seek_read(&self.file, &mut bytes[done..], at + done as u64) {
-                Ok(0) => return Err(io::ErrorKind::UnexpectedEof.into()),
-                Ok(count) => done += count,
-                Err(cause) if cause.kind() == io::ErrorKind::Interrupted => {}
-                Err(cause) => return Err(cause),
-            }
-        }
-        Ok(())
+        self.file.read_exact_at(at, bytes)
     }
 
     #[cfg(not(all(feature = "fs", any(unix, windows))))]

@@ -34,6 +34,8 @@ impl Temporary {
     /// overwritten.
     pub fn create(folder: &Path) -> io::Result<(Temporary, File)> {
         static COUNT: AtomicU64 = AtomicU64::new(0);
+        // What becomes an object is a file of the system until then.
+        let folder = &fs::temporary_folder_for(folder);
         let lock = FolderLock::hold(folder)?;
         for _ in 0..NAMES {
             let count = COUNT.fetch_add(1, Ordering::Relaxed);
@@ -79,6 +81,7 @@ impl Temporary {
             // Dropping `self` removes the temporary name.
             Ok(()) => Ok(()),
             Err(cause) if cause.kind() == io::ErrorKind::AlreadyExists => Err(cause),
+            Err(cause) if fs::is_remote(real) => Err(cause),
             // On a file system without hard links, only this check is possible.
             Err(_) if !fs::is_taken(real) => self.rename(real),
             Err(_) => Err(io::ErrorKind::AlreadyExists.into()),
@@ -152,6 +155,9 @@ impl Drop for FolderLock {
 
 /// Removes temporary files in `folder` whose process has ended. Files that cannot be removed stay.
 pub fn sweep(folder: &Path) {
+    if fs::is_remote(folder) {
+        return;
+    }
     let Ok(entries) = fs::read_dir(folder) else { return };
     let mut left: HashMap<String, Vec<PathBuf>> = HashMap::new();
     for entry in entries.flatten() {

@@ -19,6 +19,15 @@ use pyo3::prelude::*;
 /// The native part of the package `orogen`.
 #[pymodule(gil_used = false)]
 mod _orogen {
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(_: &Bound<'_, PyModule>) -> PyResult<()> {
+        #[cfg(feature = "remote")]
+        orogen::remote::mount();
+        Ok(())
+    }
+
     #[pymodule_export]
     #[allow(non_upper_case_globals)]
     const __version__: &str = env!("CARGO_PKG_VERSION");

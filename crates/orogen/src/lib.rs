@@ -115,6 +115,7 @@
 //! | terrain analysis, hydrology, erosion, contours on any grid | [`grid`] |
 //! | noise without recipes | [`noise`] |
 //! | previews on a graphics card | `gpu::WithGpu`, with the feature `gpu` |
+//! | files in S3 and other object stores | `remote::mount`, with the feature `remote` |
 //! | ops of your own | [`op!`], [`Registry`], and [`laws`], which tests them |
 //!
 //! Structs with options are built with `new` or `Default` and `with_*` methods, so that later versions can add options.
@@ -144,6 +145,9 @@ pub use orogen_jobs::{builder, export, fit, jobs, options, tilemap};
 pub use orogen_noise as noise;
 #[doc(inline)]
 pub use orogen_output as output;
+#[cfg(feature = "remote")]
+#[doc(inline)]
+pub use orogen_remote as remote;
 
 pub use budget::Budget;
 pub use chunks::{ChunkId, ChunkStep, Chunks, LodConfig};

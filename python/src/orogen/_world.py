@@ -7,7 +7,7 @@ import os
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, overload
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, TypeVar, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 __all__ = ["Objects", "Parameter", "Sampler", "Window", "World", "fit", "presets"]
 
 PathLike: TypeAlias = "str | os.PathLike[str]"
+
+#: A path that is returned as it was given.
+PathT = TypeVar("PathT", bound=PathLike)
 Size: TypeAlias = "int | tuple[int, int]"
 Part: TypeAlias = "str | tuple[int, int, int, int] | Window"
 Bounds: TypeAlias = "tuple[float, float, float, float]"
@@ -475,7 +478,7 @@ class World:
 
     def export(
         self,
-        path: PathLike,
+        path: PathT,
         layer: str = "height",
         *,
         size: Size | None = None,
@@ -485,7 +488,7 @@ class World:
         overwrite: bool | None = None,
         progress: Progress = None,
         **options: Unpack[ExportOptions],
-    ) -> Path:
+    ) -> PathT:
         """Writes a layer to a file; the extension chooses the format (`orogen export`). Returns the path.
 
         An existing file is replaced if it has the same kind; with `overwrite=True` in any case, with False never. Files
@@ -496,7 +499,7 @@ class World:
 
     def map(
         self,
-        path: PathLike,
+        path: PathT,
         *,
         window: Part | None = None,
         bounds: Bounds | None = None,
@@ -504,7 +507,7 @@ class World:
         overwrite: bool | None = None,
         progress: Progress = None,
         **options: Unpack[MapOptions],
-    ) -> Path:
+    ) -> PathT:
         """Draws a map sheet as .png, .svg or .pdf (`orogen map`). Returns the path.
 
         `size` is the size of the sheet, as on the command line; `cell` chooses the samples. See `export` for existing files.
@@ -513,7 +516,7 @@ class World:
 
     def render(
         self,
-        path: PathLike,
+        path: PathT,
         *,
         window: Part | None = None,
         bounds: Bounds | None = None,
@@ -521,13 +524,13 @@ class World:
         overwrite: bool | None = None,
         progress: Progress = None,
         **options: Unpack[RenderOptions],
-    ) -> Path:
+    ) -> PathT:
         """Renders a picture in perspective as .png (`orogen render`). `size` is the size of the picture in pixels."""
         return self._write("render", path, _choice(None, window, bounds, cell), overwrite, progress, dict(options))
 
     def blocks(
         self,
-        path: PathLike,
+        path: PathT,
         *,
         size: Size | None = None,
         window: Part | None = None,
@@ -536,13 +539,13 @@ class World:
         overwrite: bool | None = None,
         progress: Progress = None,
         **options: Unpack[BlocksOptions],
-    ) -> Path:
+    ) -> PathT:
         """Writes voxels as .vox, .schem, .glb or .png, or a folder for Luanti (`orogen blocks`)."""
         return self._write("blocks", path, _choice(size, window, bounds, cell), overwrite, progress, dict(options))
 
     def tilemap(
         self,
-        path: PathLike,
+        path: PathT,
         *,
         size: Size | None = None,
         window: Part | None = None,
@@ -551,13 +554,13 @@ class World:
         overwrite: bool | None = None,
         progress: Progress = None,
         **options: Unpack[TilemapOptions],
-    ) -> Path:
+    ) -> PathT:
         """Writes a tilemap for Tiled, LDtk and Godot into a folder (`orogen tilemap`)."""
         return self._write("tilemap", path, _choice(size, window, bounds, cell), overwrite, progress, dict(options))
 
     def build(
         self,
-        path: PathLike,
+        path: PathT,
         *,
         size: Size | None = None,
         window: Part | None = None,
@@ -566,33 +569,33 @@ class World:
         overwrite: bool | None = None,
         progress: Progress = None,
         **options: Unpack[BuildOptions],
-    ) -> Path:
+    ) -> PathT:
         """Builds a window of any size: a Cloud-Optimized GeoTIFF (.tif), a Zarr v3 group (.zarr) or a folder of tiles.
 
         A build that was interrupted goes on where it stopped; with `overwrite=True` it begins anew (`orogen build`).
 
         With `part="3/64"` it makes one of 64 parts. Each part is one call, in any process on any machine that shares
-        the file system, and the call that completes the last part finishes the result.
+        the file system or object store, and the call that completes the last part finishes the result.
         """
         return self._write("build", path, _choice(size, window, bounds, cell), overwrite, progress, dict(options))
 
     def _write(
         self,
         work: str,
-        path: PathLike,
+        path: PathT,
         choice: tuple[Any, ...],
         overwrite: bool | None,
         progress: Progress,
         options: dict[str, Any],
         layer: str = "height",
-    ) -> Path:
+    ) -> PathT:
         with listener(progress) as heard:
             found = _orogen.write(
                 self._native, work, os.fspath(path), layer, self._name, choice, overwrite, options, heard
             )
         for warning in found:
             warnings.warn(warning, stacklevel=3)
-        return Path(path)
+        return path
 
     def _repr_png_(self) -> bytes:
         return self.picture()

@@ -6,7 +6,7 @@
 >>> cluster.build("continent", "/shared/land.zarr", client=client, cell=60)
 >>> cluster.verify("continent", "/shared/land.zarr", client=client, sample=100)
 
-All workers write into one folder that they share. A part whose worker fails or dies is made again by another one, and a
+All workers write into one folder that they share, or into an object store (`s3://bucket/land.zarr`). A part whose worker fails or dies is made again by another one, and a
 build that was interrupted goes on with the same call. The result has the bits of `World.build` in one process.
 """
 
@@ -18,13 +18,12 @@ import random
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
 from itertools import islice, starmap
-from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from orogen._progress import Progress, listener
-from orogen._world import PathLike, Window, World, _restored
+from orogen._world import PathLike, PathT, Window, World, _restored
 from orogen.errors import FileError, RequestError
 
 __all__ = ["build", "verify"]
@@ -41,7 +40,7 @@ Chunk: TypeAlias = "tuple[str, slice, slice]"
 
 def build(
     world: World | PathLike,
-    path: PathLike,
+    path: PathT,
     *,
     client: Any = None,
     layers: str | Sequence[str] = "height",
@@ -49,7 +48,7 @@ def build(
     retries: int = 3,
     progress: Progress = None,
     **options: Any,
-) -> Path:
+) -> PathT:
     """Builds a window of any size by the workers of a cluster. Returns the path.
 
     Parameters
@@ -57,7 +56,8 @@ def build(
     world
         A world, the name of a preset, or a recipe. Workers open its files by their paths.
     path
-        The result as in `World.build`, in a folder that all workers share, under the same path.
+        The result as in `World.build`: a URL of an object store, or in a folder that all workers share, under the same
+        path.
     client
         A `distributed.Client`; by default the current one.
     layers
@@ -83,7 +83,7 @@ def build(
     parts = PARTS_PER_THREAD * max(threads, 1) if parts is None else parts
     if parts < 1:
         raise RequestError("`parts` must be at least 1")
-    whole = os.path.abspath(os.fspath(path))
+    whole = _whole(path)
     options["layers"] = layers if isinstance(layers, str) else ",".join(layers)
     arguments = _arguments(world)
     calls = ((arguments, whole, options, f"{number}/{parts}") for number in range(1, parts + 1))
@@ -91,9 +91,9 @@ def build(
         for done, _ in enumerate(_in_waves(client, _part, calls, retries), 1):
             if heard is not None:
                 heard(done / parts)
-    if not os.path.exists(whole):
+    if not _is_url(whole) and not os.path.exists(whole):
         raise FileError(f"{whole} is not there, although all parts were made; do all workers share its folder?")
-    return Path(path)
+    return path
 
 
 def verify(
@@ -126,7 +126,7 @@ def verify(
     FileError
         If chunks differ; the message names them.
     """
-    whole = os.path.abspath(os.fspath(store))
+    whole = _whole(store)
     group = _group(whole)
     chunks = [chunk for layer, array in sorted(group.arrays()) if array.ndim == 2 for chunk in _chunks(layer, array)]
     if not chunks:
@@ -157,6 +157,16 @@ def _client(client: Any) -> Any:
         return get_client()
     except (ImportError, ValueError):
         raise RequestError("there is no Dask cluster; set `client=distributed.Client(...)`") from None
+
+
+def _is_url(path: str) -> bool:
+    return "://" in path
+
+
+def _whole(path: PathLike) -> str:
+    """A path for other processes, whose current folder may be another one."""
+    given = os.fspath(path)
+    return given if _is_url(given) else os.path.abspath(given)
 
 
 def _arguments(world: World | PathLike) -> bytes:
@@ -215,9 +225,12 @@ def _group(path: str) -> Any:
         import zarr
     except ImportError:
         raise RequestError("a store is read with zarr: `pip install zarr`") from None
-    if not os.path.exists(os.path.join(path, "zarr.json")):
-        raise FileError(f"{path} is no Zarr group, or its build was not finished")
-    return zarr.open_group(path, mode="r")
+    try:
+        return zarr.open_group(path, mode="r")
+    except FileNotFoundError:
+        raise FileError(f"{path} is no Zarr group, or its build was not finished") from None
+    except ImportError as missing:
+        raise RequestError(f"zarr reads object stores with fsspec and its packages, such as s3fs: {missing}") from None
 
 
 def _chunks(layer: str, array: Any) -> Iterator[Chunk]:

@@ -244,6 +244,16 @@ impl Iterator for ReadDir {
     }
 }
 
+/// Whether a path names an object of a store; never.
+pub fn is_remote(_: impl AsRef<Path>) -> bool {
+    false
+}
+
+/// Whether a path names a file on an HTTP server; never.
+pub fn is_read_only(_: &Path) -> bool {
+    false
+}
+
 macro_rules! functions {
     ($($name:ident($($argument:ident),+) -> $made:ty;)+) => {$(
         #[doc = concat!("As `std::fs::", stringify!($name), "`.\n\n# Errors\nAlways.")]

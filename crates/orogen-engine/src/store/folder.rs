@@ -17,9 +17,11 @@ use std::time::{Duration, SystemTime};
 /// A folder of solutions and tiles of levels: a store for later runs and other processes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FolderStore {
-    /// The folder; created if it does not exist. Only the store's own files in it are changed.
+    /// The folder; created if it does not exist. Only the store's own files in it are changed. A URL names a folder of
+    /// an object store.
     pub folder: PathBuf,
     /// Maximum size of all entries, in bytes. While tiles of levels are stored, it may be exceeded by a few percent.
+    /// In an object store it limits single entries only; old ones are removed by rules of the store.
     pub limit: u64,
     /// Minimum estimated time on one core of solutions that are stored. The tiles of levels of a request are stored if
     /// together they take at least a tenth of it. The time is an estimate, so the same solutions are stored on any
@@ -111,7 +113,9 @@ impl SolutionStore for FolderStore {
             Err(cause) => return Err(cause),
         };
         // It is used now, so it is removed last. If its time cannot be set, it is removed a little early.
-        if let Ok(file) = File::options().append(true).open(&path) {
+        if !fs::is_remote(&path)
+            && let Ok(file) = File::options().append(true).open(&path)
+        {
             let _ = file.set_modified(SystemTime::now());
         }
         Ok(Some(Box::new(PositionedFile::new(file))))
@@ -123,13 +127,18 @@ impl SolutionStore for FolderStore {
         }
         fs::create_dir_all(&self.folder)?;
         let path = self.path(key);
+        // Others may have stored it since, which saves sending it.
+        if fs::is_remote(&path) && fs::is_file(&path) {
+            return Ok(());
+        }
         // Waiting for the disk takes longer than making a tile, and a damaged tile is detected, so tiles are written
         // without waiting.
         let put = match entry.is_tile() {
             true => file::replace_unsynced(&path, |out| entry.write_to(out)),
             false => file::replace_whole(&path, |out| entry.write_to(out)),
         };
-        if !entry.is_tile() || self.is_tidied_by(key, entry.length()) {
+        let is_tidied = !entry.is_tile() || self.is_tidied_by(key, entry.length());
+        if is_tidied && !fs::is_remote(&path) {
             self.tidy(&path);
         }
         put.map_err(io::Error::from)
@@ -155,7 +164,7 @@ impl SolutionStore for FolderStore {
     }
 
     fn scratch_folder(&self) -> Option<&Path> {
-        Some(&self.folder)
+        (!fs::is_remote(&self.folder)).then_some(self.folder.as_path())
     }
 
     fn name(&self, key: &EntryKey) -> PathBuf {

@@ -15,8 +15,9 @@ use crate::{fs, open};
 use orogen_grid::error::{Error, Result};
 use orogen_grid::grid::Window;
 
-/// Maximum memory of heights that are read whole, in bytes.
+/// Maximum memory of heights that are read whole, in bytes: of a file, and of an object of a store.
 const SMALL: u64 = 16 << 20;
+const SMALL_OBJECT: u64 = 1 << 20;
 
 /// Length of the start and of the end of a file that its identity contains, in bytes. One of them has the directory of
 /// a GeoTIFF, and with it the lengths of all blocks.
@@ -55,14 +56,15 @@ impl State {
 }
 
 impl DemFile {
-    /// Opens a file. `None` if it cannot be read in parts, or is so small that it is read whole: up to 16 MiB, and up
-    /// to half of `allowed` bytes.
+    /// Opens a file. `None` if it cannot be read in parts, or is so small that it is read whole: up to 16 MiB (1 MiB of
+    /// an object store), and up to half of `allowed` bytes.
     ///
     /// # Errors
     /// If the file cannot be read, or the distance between its samples is out of range.
     pub fn open(path: &Path, band: Option<u32>, allowed: u64) -> Result<Option<DemFile>> {
         let Some(outline) = Outline::read(path, band)? else { return Ok(None) };
-        if outline.whole_memory() <= SMALL.min(allowed / 2) {
+        let small = if fs::is_remote(path) { SMALL_OBJECT } else { SMALL };
+        if outline.whole_memory() <= small.min(allowed / 2) {
             return Ok(None);
         }
         let (file, own) = super::open::split(path);

@@ -57,8 +57,11 @@ pub fn commit(files: Vec<Staged>) -> Result<()> {
     files.into_iter().try_for_each(Staged::commit)
 }
 
-/// Checks that files can be created in `folder`, by creating and removing one.
+/// Checks that files can be created in `folder`, by creating and removing one. A folder of objects is not checked.
 pub fn check_folder(folder: &Path) -> Result<()> {
+    if fs::is_remote(folder) {
+        return Ok(());
+    }
     let refuse = |why: &str| Error::new(ErrorKind::File, format!("cannot write into {}: {why}", folder.display()));
     match fs::metadata(folder) {
         Ok(there) if !there.is_dir() => Err(refuse("it is not a folder")),
@@ -264,7 +267,9 @@ impl Write for Noting<'_> {
 /// Makes a rename in a folder durable. Some systems cannot open or sync folders, and the files are in place in any
 /// case, so failures are ignored.
 pub fn sync_folder(folder: &Path) {
-    if let Ok(folder) = File::open(folder) {
+    if !fs::is_remote(folder)
+        && let Ok(folder) = File::open(folder)
+    {
         let _ = folder.sync_all();
     }
 }
@@ -444,9 +449,9 @@ mod tests {
         let folder = Folder::new("read-only");
         let path = folder.0.join("a");
         fs::write(&path, "old").unwrap();
-        let mut permissions = fs::metadata(&path).unwrap().permissions();
+        let mut permissions = std::fs::metadata(&path).unwrap().permissions();
         permissions.set_readonly(true);
-        fs::set_permissions(&path, permissions).unwrap();
+        std::fs::set_permissions(&path, permissions).unwrap();
         let error = write_whole(&path, |out| out.write_all(b"new")).unwrap_err();
         assert!(error.to_string().ends_with("it is marked read-only"), "{error}");
         assert_eq!(fs::read(&path).unwrap(), b"old");
@@ -467,11 +472,11 @@ mod tests {
         let folder = Folder::new("links");
         let (real, link) = (folder.0.join("real"), folder.0.join("link"));
         fs::write(&real, "old").unwrap();
-        fs::set_permissions(&real, Permissions::from_mode(0o640)).unwrap();
+        std::fs::set_permissions(&real, std::fs::Permissions::from_mode(0o640)).unwrap();
         symlink("real", &link).unwrap();
         write_whole(&link, |out| out.write_all(b"new")).unwrap();
         assert_eq!(fs::read(&real).unwrap(), b"new");
-        assert_eq!(fs::metadata(&real).unwrap().permissions().mode() & 0o777, 0o640);
+        assert_eq!(std::fs::metadata(&real).unwrap().permissions().mode() & 0o777, 0o640);
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         symlink("nowhere", folder.0.join("dangling")).unwrap();
         let error = write_whole(&folder.0.join("dangling"), |out| out.write_all(b"new")).unwrap_err();

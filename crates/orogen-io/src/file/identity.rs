@@ -9,9 +9,9 @@ use crate::fs;
 pub struct FileId {
     /// The path with links resolved: the identity on systems without file numbers, and the name in messages on others.
     real: PathBuf,
-    /// Device and file number, which hard links share.
+    /// Device and file number, which hard links share; objects have none.
     #[cfg(all(unix, feature = "fs"))]
-    number: (u64, u64),
+    number: Option<[u64; 2]>,
 }
 
 impl FileId {
@@ -21,8 +21,7 @@ impl FileId {
         let real = fs::canonicalize(path).ok()?;
         #[cfg(all(unix, feature = "fs"))]
         {
-            use std::os::unix::fs::MetadataExt;
-            Some(FileId { real, number: (there.dev(), there.ino()) })
+            Some(FileId { real, number: there.number() })
         }
         #[cfg(not(all(unix, feature = "fs")))]
         {
@@ -34,7 +33,7 @@ impl FileId {
     /// Whether both are the same file.
     pub fn is(&self, other: &FileId) -> bool {
         #[cfg(all(unix, feature = "fs"))]
-        if self.number == other.number {
+        if self.number.is_some() && self.number == other.number {
             return true;
         }
         self.real == other.real

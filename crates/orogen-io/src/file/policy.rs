@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::identity::FileId;
 use super::kind::Found;
+use crate::fs;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
 /// How existing files are treated.
@@ -105,6 +106,11 @@ impl Output {
     pub fn check(&self, new: Option<&Path>) -> Result<()> {
         let path = &self.path;
         let refuse = |why: String| Err(Error::new(ErrorKind::File, format!("cannot write {}: {why}", path.display())));
+        if fs::is_read_only(path) {
+            return refuse(
+                "files on HTTP servers are only read; write to a file, or to an object of s3://, gs:// or az://".into(),
+            );
+        }
         // Paths that are not files are rejected or written directly when they are opened.
         let Some(there) = FileId::of(path) else { return Ok(()) };
         if self.policy.inputs.iter().any(|input| input.is(&there)) {
@@ -143,7 +149,6 @@ impl Output {
 mod tests {
     use super::super::{mark, stage, write_whole};
     use super::*;
-    use crate::fs;
 
     struct Folder(PathBuf);
 

@@ -21,6 +21,8 @@ pub struct Block {
     pub rows: usize,
     /// Maximum memory for making a block, in bytes.
     pub memory: u64,
+    /// Number of encoded tiles that wait until they are written.
+    pub waiting: usize,
 }
 
 impl Block {
@@ -28,10 +30,16 @@ impl Block {
     ///
     /// # Errors
     /// If not even one tile fits in the memory limit, or the world does not have these samples.
-    pub fn fitting(world: &World, target: &dyn BuildTarget, stage: Stage, layers: &[&str]) -> Result<Block> {
+    pub fn fitting(
+        world: &World,
+        target: &dyn BuildTarget,
+        stage: Stage,
+        layers: &[&str],
+        waiting: usize,
+    ) -> Result<Block> {
         let of = |columns: usize, rows: usize| -> Result<Block> {
-            let memory = memory(world, target, layers, columns, rows)?;
-            Ok(Block { columns, rows, memory })
+            let memory = memory(world, target, layers, [columns, rows], waiting)?;
+            Ok(Block { columns, rows, memory, waiting })
         };
         let mut block = of(1, 1)?;
         let allowed = world.memory_limit().unwrap_or(u64::MAX);
@@ -85,18 +93,26 @@ impl Block {
 }
 
 /// Memory for making this many tiles together, in bytes.
-fn memory(world: &World, target: &dyn BuildTarget, layers: &[&str], columns: usize, rows: usize) -> Result<u64> {
+fn memory(
+    world: &World,
+    target: &dyn BuildTarget,
+    layers: &[&str],
+    [columns, rows]: [usize; 2],
+    waiting: usize,
+) -> Result<u64> {
     let window = union(target, (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))));
     let Some(window) = window else { return Ok(0) };
-    let beside = memory_beside(world, target, layers);
+    let beside = memory_beside(world, target, layers, waiting);
     let allowed = world.memory_limit().map(|limit| limit.saturating_sub(beside));
     Ok(world.memory_of(&world.plan_within(layers, &window, allowed)?)?.saturating_add(beside))
 }
 
-/// Memory in addition to a block, in bytes: for each thread a tile cut out of it, and its encoding.
-pub fn memory_beside(world: &World, target: &dyn BuildTarget, layers: &[&str]) -> u64 {
-    let tile = target.window(0, 0).len() as u64 * 4 + target.scratch_memory();
-    tile.saturating_mul((layers.len() * world.threads()) as u64)
+/// Memory in addition to a block, in bytes: for each thread a tile cut out of it, and its encoding; and `waiting`
+/// encodings.
+pub fn memory_beside(world: &World, target: &dyn BuildTarget, layers: &[&str], waiting: usize) -> u64 {
+    let samples = target.window(0, 0).len() as u64 * 4;
+    let (tiles, waiting) = ((layers.len() * world.threads()) as u64, (layers.len() * waiting) as u64);
+    (samples + target.scratch_memory()).saturating_mul(tiles).saturating_add(samples.saturating_mul(waiting))
 }
 
 /// The window that contains the windows of all these tiles.

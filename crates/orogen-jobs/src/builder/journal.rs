@@ -139,7 +139,7 @@ impl Journal {
     /// in the same folder that no other process uses.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If it cannot be written, or if it is a new object and another process was faster.
     pub fn write(path: &Path, temporary: &Path, state: &JournalState) -> Result<Journal> {
         let put = || -> io::Result<File> {
             let mut all = String::new();
@@ -149,10 +149,20 @@ impl Journal {
             let mut file = File::create(temporary)?;
             file.write_all(all.as_bytes())?;
             file.sync_all()?;
-            fs::rename(temporary, path)?;
+            // A store has no locks: of two builds that begin at the same time, one is refused.
+            match fs::is_remote(path) && !fs::is_file(path) {
+                true => fs::hard_link(temporary, path).and_then(|()| fs::remove_file(temporary))?,
+                false => fs::rename(temporary, path)?,
+            }
             OpenOptions::new().append(true).open(path)
         };
-        let file = put().map_err(|cause| Error::file("write", path, &cause))?;
+        let file = put().map_err(|cause| match cause.kind() {
+            io::ErrorKind::AlreadyExists => Error::new(
+                ErrorKind::File,
+                format!("another process has just begun {}; start again to continue its build", path.display()),
+            ),
+            _ => Error::file("write", path, &cause),
+        })?;
         Ok(Journal { path: path.to_path_buf(), file: Mutex::new(file) })
     }
 

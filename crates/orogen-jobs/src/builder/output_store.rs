@@ -4,18 +4,25 @@ use std::collections::BTreeMap;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{SyncSender, sync_channel};
 use std::sync::{Mutex, PoisonError};
 
 use super::digest::{FileDigest, Measured};
 use super::job::{Job, JobFile, Made, Record};
 use super::journal::Journal;
 use super::work_dir::WorkDir;
-use orogen_grid::error::{Error, Result};
+use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_io::file;
 use orogen_io::fs::{self, File};
 
 /// Buffer size for an assembled file, in bytes.
 const BUFFER: usize = 1 << 20;
+
+/// Number of threads that send objects while others make tiles. Each waits for a server nearly all the time.
+const SENDERS: usize = 8;
+
+/// Number of tiles that wait to be sent or are being sent.
+pub const WAITING: usize = 2 * SENDERS;
 
 /// Writes the content of a file. Tests replace it to simulate a full disk.
 pub type Put = dyn Fn(&Path, &[u8]) -> io::Result<()> + Send + Sync;
@@ -27,7 +34,14 @@ pub struct OutputStore<'a> {
     records: Mutex<BTreeMap<Job, Record>>,
     count: AtomicU64,
     put: &'a Put,
+    /// Where tiles wait to be sent, while there are threads that send them.
+    queue: Mutex<Option<SyncSender<Waiting>>>,
+    /// The first failure of these threads.
+    failure: Mutex<Option<Error>>,
 }
+
+/// A tile that waits to be sent.
+type Waiting = (Job, Vec<JobFile>, Made);
 
 impl<'a> OutputStore<'a> {
     /// Creates a store with the records of completed jobs.
@@ -37,14 +51,67 @@ impl<'a> OutputStore<'a> {
         records: BTreeMap<Job, Record>,
         put: &'a Put,
     ) -> OutputStore<'a> {
-        OutputStore { work_dir, journal, records: Mutex::new(records), count: AtomicU64::new(0), put }
+        let records = Mutex::new(records);
+        let count = AtomicU64::new(0);
+        OutputStore { work_dir, journal, records, count, put, queue: Mutex::default(), failure: Mutex::default() }
     }
 
-    /// Writes the files of a job and records them in the journal.
+    /// Does `work`, in which [`OutputStore::keep`] only queues tiles if they become objects: other threads send them.
+    /// All are sent at the end.
     ///
     /// # Errors
-    /// If they cannot be written.
-    pub fn keep(&self, job: Job, places: &[JobFile], made: &Made) -> Result<()> {
+    /// The errors of `work`, and of the files.
+    pub fn sending<T>(&self, work: impl FnOnce() -> Result<T>) -> Result<T> {
+        if !self.work_dir.is_remote() {
+            return work();
+        }
+        let (queue, next) = sync_channel::<Waiting>(WAITING - SENDERS);
+        let next = Mutex::new(next);
+        let send = || {
+            loop {
+                let waiting = next.lock().unwrap_or_else(PoisonError::into_inner).recv();
+                let Ok((job, places, made)) = waiting else { return };
+                // After a failure the queue is emptied, so that nobody waits.
+                if self.failed().is_none()
+                    && let Err(error) = self.write(job, &places, &made)
+                {
+                    self.failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+                }
+            }
+        };
+        std::thread::scope(|scope| {
+            (0..SENDERS).for_each(|_| drop(scope.spawn(send)));
+            self.set_queue(Some(queue));
+            // Also after a panic, because the threads wait for its end.
+            let _closed = ClosedAtEnd(self);
+            work()
+        })
+        .and_then(|done| self.failed().map_or(Ok(done), Err))
+    }
+
+    fn set_queue(&self, queue: Option<SyncSender<Waiting>>) {
+        *self.queue.lock().unwrap_or_else(PoisonError::into_inner) = queue;
+    }
+
+    fn failed(&self) -> Option<Error> {
+        self.failure.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Writes the files of a job and records them in the journal, now or within [`OutputStore::sending`] later.
+    ///
+    /// # Errors
+    /// If they cannot be written, or earlier ones could not.
+    pub fn keep(&self, job: Job, places: Vec<JobFile>, made: Made) -> Result<()> {
+        let queue = self.queue.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let Some(queue) = queue else { return self.write(job, &places, &made) };
+        if let Some(error) = self.failed() {
+            return Err(error);
+        }
+        let lost = || Error::new(ErrorKind::File, "the threads that send objects have ended");
+        queue.send((job, places, made)).map_err(|_| lost())
+    }
+
+    fn write(&self, job: Job, places: &[JobFile], made: &Made) -> Result<()> {
         let mut digests = Vec::with_capacity(made.files.len());
         for (place, bytes) in places.iter().zip(&made.files) {
             digests.push(self.file(place, bytes)?);
@@ -141,6 +208,15 @@ impl<'a> OutputStore<'a> {
 
     fn temporary(&self) -> PathBuf {
         self.work_dir.temporary(self.count.fetch_add(1, Ordering::Relaxed))
+    }
+}
+
+/// Takes the queue of a store away when it is dropped.
+struct ClosedAtEnd<'s, 'a>(&'s OutputStore<'a>);
+
+impl Drop for ClosedAtEnd<'_, '_> {
+    fn drop(&mut self) {
+        self.0.set_queue(None);
     }
 }
 

@@ -3,6 +3,7 @@
 //! A part never waits for another one to do its work. The lock of all parts is held for a moment when a part begins,
 //! and while the result is finished.
 
+use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -122,7 +123,14 @@ impl PartFolder {
     /// The parts that are not marked as complete, in order. Of more than [`ALL_SEEN`] parts, perhaps not all of them.
     pub fn missing(&self) -> Vec<usize> {
         // A network file system may remember that a mark was absent. Opening the folder makes it ask again.
-        drop(fs::read_dir(&self.path));
+        let listing = fs::read_dir(&self.path);
+        // Objects are listed in a few requests, but looked up one by one.
+        let listed: Option<BTreeSet<PathBuf>> = fs::is_remote(&self.path)
+            .then(|| listing.into_iter().flatten().flatten().map(|entry| entry.path()).collect());
+        let is_done = |number: usize| match &listed {
+            Some(listed) => listed.contains(&self.done(number)),
+            None => fs::is_file(&self.done(number)),
+        };
         let count = self.part.count;
         // Far apart, so that a missing part is soon found in whatever order the parts are run.
         let step = (1..=(count * 5).div_ceil(8)).rev().find(|step| divisor(*step, count) == 1).unwrap_or(1);
@@ -132,7 +140,7 @@ impl PartFolder {
                 break;
             }
             let number = (n as u64 * step as u64 % count as u64) as usize + 1;
-            if !fs::is_file(&self.done(number)) {
+            if !is_done(number) {
                 missing.push(number);
             }
         }

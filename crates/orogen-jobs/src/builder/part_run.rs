@@ -6,7 +6,6 @@
 //! writes the journal of a complete build. After a kill at any moment, the same call goes on.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
 
 use orogen_grid::parallel;
 
@@ -99,7 +98,7 @@ impl Build<'_> {
         };
         for (path, digest) in finished {
             let path = self.work_dir.result(path);
-            if !has_length(&path, digest) {
+            if !digest.has_length_of(&path) {
                 return refuse(format!(
                     "{} is missing or damaged, although the build was finished; repair it with --resume and without --part",
                     path.display()
@@ -127,7 +126,13 @@ impl Build<'_> {
         let state = JournalState { parts: Some(part.count), ..state };
         if is_new {
             folder.clear()?;
-            Journal::write(&self.work_dir.journal(), &self.work_dir.temporary(0), &state)?;
+            let journal = self.work_dir.journal();
+            let begun = Journal::write(&journal, &self.work_dir.temporary(0), &state);
+            if begun.is_err() && self.work_dir.is_remote() && fs::is_file(&journal) {
+                // Without locks, another part may have begun the build at the same time.
+                return Ok(None);
+            }
+            begun?;
         }
         Ok(Some((running, state)))
     }
@@ -209,21 +214,29 @@ impl Build<'_> {
         whole.records.extend(tiles.into_iter().map(|(_, job, record)| (job, record)));
         self.work_dir.furnish()?;
         let wanted = self.wanted(&sound);
-        let (samples, bytes) = self.finish(&wanted, &whole, &synced, progress)?;
+        let finished = self.finish(&wanted, &whole, &synced, progress);
+        if finished.is_err()
+            && self.work_dir.is_remote()
+            && let Some(complete) = self.completed(self.begun(part)?.as_ref())?
+        {
+            // Without locks, another part may have finished the result, and removed temporary files.
+            report.bytes = complete.bytes;
+            return Ok(());
+        }
+        let (samples, bytes) = finished?;
         report.made += wanted.len();
         report.samples = report.samples.and(samples);
         report.bytes = bytes;
         Ok(())
     }
 
-    /// Whether the files of a job exist and have the lengths of its record.
+    /// Whether the files of a job exist and have the lengths of its record. Objects are not looked at: one request for
+    /// each tile of all parts would take too long.
     fn has_lengths(&self, job: Job, record: &Record) -> bool {
         let places = self.target.places(job);
-        let same = |(place, digest): (&JobFile, &FileDigest)| has_length(&self.work_dir.path(place), digest);
+        let is_remote = self.work_dir.is_remote();
+        let same =
+            |(place, digest): (&JobFile, &FileDigest)| is_remote || digest.has_length_of(&self.work_dir.path(place));
         places.len() == record.digests.len() && places.iter().zip(&record.digests).all(same)
     }
-}
-
-fn has_length(path: &Path, digest: &FileDigest) -> bool {
-    fs::metadata(path).is_ok_and(|there| there.is_file() && there.len() == digest.length)
 }

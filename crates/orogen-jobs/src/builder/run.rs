@@ -12,7 +12,7 @@ use super::folder::Folder;
 use super::identity::Identity;
 use super::job::{Job, JobFile, Record, Stage};
 use super::journal::{Journal, JournalState};
-use super::output_store::{OutputStore, Put, put};
+use super::output_store::{OutputStore, Put, WAITING, put};
 use super::part::Part;
 use super::part_folder::{self, PartFolder};
 use super::samples::range;
@@ -114,7 +114,8 @@ impl<'a> Build<'a> {
         }
         let target = target(world, &identity, spec.form)?;
         let stages = target.stages();
-        let block = Block::fitting(world, target.as_ref(), stages[0], &layers)?;
+        let waiting = if fs::is_remote(output.path()) { WAITING } else { 0 };
+        let block = Block::fitting(world, target.as_ref(), stages[0], &layers, waiting)?;
         let part = spec.part.map(|[number, count]| Part { number, count });
         let work_dir = WorkDir::new(output, spec.form.is_file())?;
         let work_dir = match part {
@@ -369,20 +370,34 @@ impl<'a> Build<'a> {
         let [mut solving, each] = self.work(wanted)?;
         let packing: f64 = (0..self.stages.len()).map(|stage| PACKING * samples(stage)).sum();
         progress.expect(solving + each * samples(0) + packing);
-        for (n, stage) in self.stages.iter().enumerate() {
-            let tiles = wanted.iter().filter(|job| job.stage == n).map(|job| (job.row, job.column));
-            if n == 0 {
-                for group in self.block.groups(&tiles.collect(), *stage) {
-                    // The first group includes the time for solving.
-                    let work = std::mem::take(&mut solving) + each * (group.len() * stage.samples) as f64;
-                    count = count.and(self.make_group(&group, store, progress, work)?);
-                }
-            } else {
-                let tiles: Vec<(usize, usize)> = tiles.collect();
-                parallel::try_for_each(tiles, |(row, column)| {
-                    self.make_one(Job { stage: n, row, column }, &[], store, progress)
-                })?;
-            }
+        for n in 0..self.stages.len() {
+            let made =
+                store.sending(|| self.make_stage(n, wanted, store, progress, [std::mem::take(&mut solving), each]))?;
+            count = count.and(made);
+        }
+        Ok(count)
+    }
+
+    /// Runs the jobs of one stage; `work` is the time for solving and for making one sample, in nanoseconds.
+    fn make_stage(
+        &self,
+        n: usize,
+        wanted: &BTreeSet<Job>,
+        store: &OutputStore,
+        progress: &Progress,
+        [mut solving, each]: [f64; 2],
+    ) -> Result<FiniteCount> {
+        let (stage, mut count) = (self.stages[n], FiniteCount::default());
+        let tiles = wanted.iter().filter(|job| job.stage == n).map(|job| (job.row, job.column));
+        if n > 0 {
+            let make = |(row, column)| self.make_one(Job { stage: n, row, column }, &[], store, progress);
+            parallel::try_for_each(tiles.collect::<Vec<_>>(), make)?;
+            return Ok(count);
+        }
+        for group in self.block.groups(&tiles.collect(), stage) {
+            // The first group includes the time for solving.
+            let work = std::mem::take(&mut solving) + each * (group.len() * stage.samples) as f64;
+            count = count.and(self.make_group(&group, store, progress, work)?);
         }
         Ok(count)
     }
@@ -408,7 +423,7 @@ impl<'a> Build<'a> {
             return Ok(FiniteCount::default());
         };
         let layers: Vec<&str> = self.identity.layers.iter().map(String::as_str).collect();
-        let beside = memory_beside(self.world, self.target.as_ref(), &layers);
+        let beside = memory_beside(self.world, self.target.as_ref(), &layers, self.block.waiting);
         let grids = self.world.grids_beside(&layers, &window, beside, &progress.part(work))?;
         parallel::try_for_each(group, |&(row, column)| {
             let window = self.target.window(row, column);
@@ -426,7 +441,7 @@ impl<'a> Build<'a> {
             // Ranges also tell whether any sample is finite.
             made.ranges = grids.iter().map(range).collect();
         }
-        store.keep(job, &self.target.places(job), &made)?;
+        store.keep(job, self.target.places(job), made)?;
         progress.advance(PACKING * self.stages[job.stage].samples as f64);
         Ok(())
     }

@@ -95,13 +95,26 @@ impl WorkDir {
         let mut beside = name.to_os_string();
         beside.push(".build");
         let beside = real.with_file_name(beside);
-        let temporary = beside.join(TEMPORARY);
+        // What becomes an object is a file of the system until then.
+        let temporary = match fs::is_remote(&beside) {
+            true => {
+                static COUNT: AtomicUsize = AtomicUsize::new(0);
+                let count = COUNT.fetch_add(1, Ordering::Relaxed);
+                fs::temporary_folder().join(format!("orogen-build-{}-{count}", std::process::id()))
+            }
+            false => beside.join(TEMPORARY),
+        };
         Ok(WorkDir { output: output.clone(), beside, temporary, out: real, file: is_file })
     }
 
     /// The work directory of a part, which has temporary files of its own.
     pub fn for_part(self, number: usize) -> WorkDir {
-        WorkDir { temporary: self.beside.join(TEMPORARY).join(format!("part-{number}")), ..self }
+        WorkDir { temporary: self.temporary.join(format!("part-{number}")), ..self }
+    }
+
+    /// Whether the files of the build are objects.
+    pub fn is_remote(&self) -> bool {
+        fs::is_remote(&self.out)
     }
 
     /// The folder of the parts' journals and locks.
@@ -295,6 +308,9 @@ impl WorkDir {
         [SCRATCH, TEMPORARY]
             .iter()
             .try_for_each(|name| remove(&self.beside.join(name), |path| fs::remove_dir_all(path)))?;
+        if self.is_remote() {
+            self.tidy()?;
+        }
         self.drop_parts()
     }
 
@@ -329,6 +345,10 @@ impl WorkDir {
     /// # Errors
     /// If a file cannot be synced.
     pub fn sync(&self, files: &[JobFile]) -> Result<()> {
+        if self.is_remote() {
+            // Objects are durable once they are written.
+            return Ok(());
+        }
         let paths: Vec<PathBuf> = files.iter().map(|file| self.path(file)).collect();
         let sync = |path: &PathBuf| {
             let synced = File::open(path).and_then(|file| file.sync_all());
