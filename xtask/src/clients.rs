@@ -11,6 +11,7 @@ mod neon;
 mod passed;
 mod presets;
 pub mod python;
+mod remote;
 mod studio;
 mod wasm;
 
@@ -34,6 +35,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step of
   build     cargo build --release of the command line and of the Python package
   window    clippy and build of the studio's window and of graphics cards
   wasm      the libraries built for WebAssembly, without threads; four presets under node, and a world without files
+  remote    builds, caches and elevation models in an object store, moto's: the bytes of local files
   presets   every preset against golden/presets.txt, at every SIMD level of this machine, on one thread or two
   numpy     NumPy reads .npy: the numbers of summary.json, and the orientation
   pillow    Pillow reads the pictures: grey values, the share of sea, animations
@@ -64,6 +66,7 @@ Only if named or with --all, because they take long or need large programs:
   fuzz      libFuzzer on the readers of foreign files, 60 s each
   luanti    a Luanti server opens worlds of blocks: the same blocks
   grass     GRASS and gdaldem compute the same derived layers: wetness, insolation, viewshed, landforms ...
+  faults    clippy on object stores, and builds, caches and elevation models in a store that fails every few requests
   wheel     the same tests of the Python package as the wheel that maturin makes
   blender   Blender imports meshes: size, summit and light are right; needs Python 3.11
 
@@ -90,6 +93,7 @@ const NUMPY: &str = "numpy==2.4.6";
 const RASTERIO: &str = "rasterio==1.4.4";
 const PILLOW: &str = "pillow==12.2.0";
 const BLOCKS: &[&str] = &[NUMPY, "nbtlib==2.0.4", "midvoxio==0.1.6", "matplotlib==3.11.2", "trimesh==5.2.0"];
+const MOTO: &str = "moto[server]==5.2.5";
 const LAYERS: &[&str] = &[NUMPY, RASTERIO, "whitebox-workflows==2.0.6"];
 
 const CLIENTS: &[Client] = &[
@@ -189,9 +193,12 @@ const CLIENTS: &[Client] = &[
             "fastscapelib==0.3.0",
             "opensimplex==0.4.5.1",
             "perlin-numpy==0.0.1",
+            MOTO,
+            "obstore==0.12.1",
         ],
         npm: &["pyright@1.1.414"],
     },
+    Client { name: "remote", apt: &[], pip: &[NUMPY, RASTERIO, MOTO], npm: &[] },
     Client { name: "wheel", apt: &[], pip: &["maturin==1.16.0"], npm: &[] },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
@@ -231,9 +238,9 @@ const PACKAGES: Step = Step {
 };
 const BUILD: Step = Step {
     name: "build",
-    about: "cargo build --release -p orogen-cli -p orogen-py",
+    about: "cargo build --release -p orogen-cli -p orogen-py, with object stores",
     group: Some(1),
-    run: || sh(&mut cargo("build --quiet --release --package orogen-cli --package orogen-py")),
+    run: || sh(&mut cargo(&format!("build --quiet --release {}", remote::BUILT))),
 };
 
 /// Of the steps that run in parallel, the longest ones come first.
@@ -244,6 +251,7 @@ const STEPS: &[&Step] = &[
     &beside("window", "clippy and build of the studio's window and of graphics cards", studio::build),
     &beside("wasm", "four presets made by the libraries built for WebAssembly", wasm::check_four),
     &beside("python", "the Python package in a new environment", python::check),
+    &beside("remote", "builds, caches and heights in an object store, moto's", || script("remote")),
     &beside("presets", "the presets' golden hashes at every level", presets::check),
     &beside("meshes", "the glTF validator, trimesh, meshio and admesh read meshes", || script("meshes")),
     &beside("water", "GDAL, SQLite and Shapely read rivers, lakes and watersheds", || script("water")),
@@ -276,6 +284,7 @@ const ON_REQUEST: &[&Step] = &[
         noted("grass", || script_for("grass", "layers"))
     }),
     &beside("blender", "Blender imports meshes", || noted("blender", blender::check)),
+    &alone("faults", "object stores that fail", || noted("faults", remote::check_faults)),
     &alone("wheel", "the Python package as a wheel", || noted("wheel", python::check_wheel)),
     // These two share their folders with `wasm` and `presets`.
     &alone("wasm-all", "every preset made by the libraries built for WebAssembly", || {

@@ -1,8 +1,8 @@
 //! The sets of packages that cargo compiles for the checks. Both sets use the same features of shared packages, so that
 //! no package is compiled twice.
 
-/// The whole workspace; the studio without its window, and no graphics card.
-pub const LIBRARIES: &str = "--workspace --exclude orogen-gpu --no-default-features";
+/// The whole workspace; the studio without its window, no graphics card, and no object stores.
+pub const LIBRARIES: &str = "--workspace --exclude orogen-gpu --exclude orogen-remote --no-default-features";
 
 /// The studio with its window, graphics cards, and the command line with `--device`.
 pub const WINDOW: &str = "--package orogen-features --package orogen-gpu --package orogen-studio --package orogen-cli \

@@ -22,7 +22,7 @@ mod _orogen {
     use pyo3::prelude::*;
 
     #[pymodule_init]
-    fn init(_: &Bound<'_, PyModule>) -> PyResult<()> {
+    fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
         #[cfg(feature = "remote")]
         orogen::remote::mount();
         Ok(())

@@ -589,9 +589,10 @@ class World:
         options: dict[str, Any],
         layer: str = "height",
     ) -> PathT:
+        given: PathLike = path
         with listener(progress) as heard:
             found = _orogen.write(
-                self._native, work, os.fspath(path), layer, self._name, choice, overwrite, options, heard
+                self._native, work, os.fspath(given), layer, self._name, choice, overwrite, options, heard
             )
         for warning in found:
             warnings.warn(warning, stacklevel=3)

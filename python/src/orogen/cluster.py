@@ -225,12 +225,18 @@ def _group(path: str) -> Any:
         import zarr
     except ImportError:
         raise RequestError("a store is read with zarr: `pip install zarr`") from None
+    store: Any = path
+    if _is_url(path):
+        try:
+            from obstore.store import from_url
+            from zarr.storage import ObjectStore
+        except ImportError:
+            raise RequestError("a store of objects is read with obstore: `pip install obstore`") from None
+        store = ObjectStore(from_url(path), read_only=True)
     try:
-        return zarr.open_group(path, mode="r")
+        return zarr.open_group(store, mode="r")
     except FileNotFoundError:
         raise FileError(f"{path} is no Zarr group, or its build was not finished") from None
-    except ImportError as missing:
-        raise RequestError(f"zarr reads object stores with fsspec and its packages, such as s3fs: {missing}") from None
 
 
 def _chunks(layer: str, array: Any) -> Iterator[Chunk]:
