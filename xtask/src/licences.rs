@@ -5,8 +5,8 @@ use serde_json::Value;
 use crate::failure::{Failure, Result};
 use crate::{output, shell};
 
-/// Accepted licences: permissive licences; MPL-2.0, which binds only its own files; and licences of fonts that programs
-/// may contain.
+/// Accepted licences: permissive licences; MPL-2.0, which binds only its own files; and licences of data and fonts
+/// that programs may contain.
 const ACCEPTED: &[&str] = &[
     "0BSD",
     "Apache-2.0",
@@ -14,6 +14,8 @@ const ACCEPTED: &[&str] = &[
     "BSD-3-Clause",
     "BSL-1.0",
     "CC0-1.0",
+    // Data without conditions on what is made with it: the certificates that browsers trust.
+    "CDLA-Permissive-2.0",
     "ISC",
     "MIT",
     "MIT-0",

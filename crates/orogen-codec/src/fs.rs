@@ -1,4 +1,4 @@
-//! File system access. With the feature `fs` this is `std::fs`, extended by [objects](objects) of a store such as S3.
+//! File system access. With the feature `fs` this is `std::fs`, extended by objects of a store such as S3.
 //! Without it the module has the same items, but each fails with [`std::io::ErrorKind::Unsupported`].
 //!
 //! All libraries of Orogen access files through this module. A host without a file system can therefore run everything

@@ -245,11 +245,13 @@ impl Iterator for ReadDir {
 }
 
 /// Whether a path names an object of a store; never.
+#[must_use]
 pub fn is_remote(_: impl AsRef<Path>) -> bool {
     false
 }
 
 /// Whether a path names a file on an HTTP server; never.
+#[must_use]
 pub fn is_read_only(_: &Path) -> bool {
     false
 }

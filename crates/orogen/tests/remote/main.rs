@@ -1,4 +1,5 @@
-//! Object stores: builds, caches, exports and elevation models by URL have the bits of local ones, also through failures.
+//! Object stores: builds, caches, exports and elevation models by URL have the bits of local ones, also through
+//! failures.
 
 mod server;
 
@@ -14,9 +15,9 @@ use orogen::io::file::{Existing, OutputPolicy, write_whole};
 use orogen::io::fs;
 use orogen::io::test_folder::TestFolder;
 use orogen::{Export, FolderStore, Options, Progress, Result, Session, Window, World, presets};
-use server::{Fault, Server};
+use server::{Failure, Server};
 
-const FAULTS: [Fault; 4] = [Fault::Status(500), Fault::Silence, Fault::Status(503), Fault::Half];
+const FAILURES: [Failure; 4] = [Failure::Status(500), Failure::Silence, Failure::Status(503), Failure::Half];
 
 /// The store of this process; every test has a bucket of its own.
 fn server() -> &'static Server {
@@ -31,7 +32,7 @@ fn server() -> &'static Server {
             setting("AWS_ACCESS_KEY_ID", "somebody"),
             setting("AWS_SECRET_ACCESS_KEY", "secret"),
         ]);
-        server.fail(&FAULTS);
+        server.fail(&FAILURES);
         server
     })
 }

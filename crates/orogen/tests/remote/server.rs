@@ -1,5 +1,5 @@
-//! A server on loopback that keeps objects in memory and speaks as much of S3's protocol as clients use: objects, ranges,
-//! conditions, listings and uploads in parts. It can fail every few requests, like real ones.
+//! A server on loopback that keeps objects in memory and speaks as much of S3's protocol as clients use: objects,
+//! ranges, conditions, listings and uploads in parts. It can fail every few requests, like real ones.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 /// What a server does instead of answering a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Fault {
+pub enum Failure {
     /// Answers with this status.
     Status(u16),
     /// Closes the connection without an answer, although the request was carried out.
@@ -18,12 +18,12 @@ pub enum Fault {
     Half,
 }
 
-#[derive(Debug, Default)]
+#[derive(Debug, Defailure)]
 struct Kept {
     objects: BTreeMap<String, Vec<u8>>,
     /// Parts of uploads that are not complete, by upload and number.
     parts: BTreeMap<(String, u32), Vec<u8>>,
-    faults: Vec<Fault>,
+    failures: Vec<Failure>,
 }
 
 /// The server. It ends with the process.
@@ -66,12 +66,12 @@ impl Server {
     pub fn start() -> Server {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let address = listener.local_addr().unwrap().to_string();
-        let server = Server { kept: Arc::default(), requests: Arc::default(), sent: Arc::default(), address };
+        let server = Server { kept: Arc::defailure(), requests: Arc::defailure(), sent: Arc::defailure(), address };
         let serving = server.clone();
         std::thread::spawn(move || {
             for stream in listener.incoming().flatten() {
                 let server = serving.clone();
-                // A client that closes its connection is no fault.
+                // A client that closes its connection is no failure.
                 std::thread::spawn(move || drop(server.serve(&stream)));
             }
         });
@@ -83,8 +83,8 @@ impl Server {
     }
 
     /// Fails from now on: every twelfth request in one of these ways, in turn.
-    pub fn fail(&self, faults: &[Fault]) {
-        self.kept().faults = faults.to_vec();
+    pub fn fail(&self, failures: &[Failure]) {
+        self.kept().failures = failures.to_vec();
     }
 
     /// The objects whose names start so, by the rest of their names.
@@ -116,18 +116,18 @@ impl Server {
         let mut reader = BufReader::new(stream);
         while let Some(request) = read(&mut reader)? {
             let count = self.requests.fetch_add(1, Ordering::Relaxed);
-            let fault = {
+            let failure = {
                 let kept = self.kept();
-                let is_due = count % 12 == 11 && !kept.faults.is_empty();
-                is_due.then(|| kept.faults[count as usize / 12 % kept.faults.len()])
+                let is_due = count % 12 == 11 && !kept.failures.is_empty();
+                is_due.then(|| kept.failures[count as usize / 12 % kept.failures.len()])
             };
-            let answer = match fault {
-                Some(Fault::Status(status)) => {
+            let answer = match failure {
+                Some(Failure::Status(status)) => {
                     Answer::xml(status, "<Error><Code>SlowDown</Code><Message>Slow down.</Message></Error>".into())
                 }
                 _ => self.answer(&request),
             };
-            if fault == Some(Fault::Silence) {
+            if failure == Some(Failure::Silence) {
                 return Ok(());
             }
             if request.method == "GET" {
@@ -144,9 +144,9 @@ impl Server {
             head.push_str("\r\n");
             let mut out = stream;
             out.write_all(head.as_bytes())?;
-            match (is_head, fault) {
+            match (is_head, failure) {
                 (true, _) => {}
-                (false, Some(Fault::Half)) => return out.write_all(&answer.body[..answer.body.len() / 2]),
+                (false, Some(Failure::Half)) => return out.write_all(&answer.body[..answer.body.len() / 2]),
                 (false, _) => out.write_all(&answer.body)?,
             }
         }
@@ -282,7 +282,8 @@ fn read(reader: &mut BufReader<&TcpStream>) -> std::io::Result<Option<Request>> 
         return Ok(None);
     }
     let mut words = line.split_whitespace();
-    let (method, target) = (words.next().unwrap_or_default().to_string(), words.next().unwrap_or_default().to_string());
+    let (method, target) =
+        (words.next().unwrap_or_defailure().to_string(), words.next().unwrap_or_defailure().to_string());
     let mut headers = BTreeMap::new();
     loop {
         let mut line = String::new();
