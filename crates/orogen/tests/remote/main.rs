@@ -1,6 +1,8 @@
 //! Object stores: builds, caches, exports and elevation models by URL have the bits of local ones, also through
 //! failures.
 
+#![allow(clippy::unwrap_used, reason = "a failure is a failed test")]
+
 mod server;
 
 use std::collections::BTreeMap;
@@ -253,7 +255,7 @@ fn heights_are_read_in_parts_from_s3_and_http() {
     web.put("maps/land.tif", bytes[..bytes.len() - 1].to_vec());
     let error = world.window("height", &window).unwrap_err().to_string();
     assert!(error.contains("it was changed"), "{error}");
-    let error = orogen::open(&format!("http://{}/maps/none.tif", web.address)).err().unwrap().to_string();
+    let error = orogen::open(format!("http://{}/maps/none.tif", web.address)).err().unwrap().to_string();
     assert!(error.contains("there is no such object"), "{error}");
 }
 

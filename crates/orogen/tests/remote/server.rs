@@ -18,7 +18,7 @@ pub enum Failure {
     Half,
 }
 
-#[derive(Debug, Defailure)]
+#[derive(Debug, Default)]
 struct Kept {
     objects: BTreeMap<String, Vec<u8>>,
     /// Parts of uploads that are not complete, by upload and number.
@@ -66,7 +66,7 @@ impl Server {
     pub fn start() -> Server {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let address = listener.local_addr().unwrap().to_string();
-        let server = Server { kept: Arc::defailure(), requests: Arc::defailure(), sent: Arc::defailure(), address };
+        let server = Server { kept: Arc::default(), requests: Arc::default(), sent: Arc::default(), address };
         let serving = server.clone();
         std::thread::spawn(move || {
             for stream in listener.incoming().flatten() {
@@ -282,8 +282,7 @@ fn read(reader: &mut BufReader<&TcpStream>) -> std::io::Result<Option<Request>> 
         return Ok(None);
     }
     let mut words = line.split_whitespace();
-    let (method, target) =
-        (words.next().unwrap_or_defailure().to_string(), words.next().unwrap_or_defailure().to_string());
+    let (method, target) = (words.next().unwrap_or_default().to_string(), words.next().unwrap_or_default().to_string());
     let mut headers = BTreeMap::new();
     loop {
         let mut line = String::new();
