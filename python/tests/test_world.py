@@ -208,6 +208,8 @@ def test_progress_is_told_and_can_end_the_work() -> None:
 
 
 def test_a_signal_interrupts_the_work() -> None:
+    if threading.current_thread() is not threading.main_thread():
+        pytest.skip("signals belong to the main thread")
     # A shell that starts the tests in the background has it ignored.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     world = orogen.World("alpine", seed=8, cache=False)

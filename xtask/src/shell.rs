@@ -31,6 +31,9 @@ pub fn program(name: impl AsRef<std::ffi::OsStr>) -> Command {
 pub fn cargo(args: &str) -> Command {
     let mut command = program(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.args(args.split_whitespace());
+    // The Python package has one binary for all versions of Python with a lock, and needs none to compile. Whoever
+    // builds the free-threaded one chooses its Python, so this does not stand in the settings of cargo.
+    command.env("PYO3_NO_PYTHON", "1");
     command
 }
 

@@ -3,9 +3,9 @@
 use super::grids::missing;
 use super::run::{Engine, Solutions};
 use super::tiles::Tiles;
-use crate::plan::cost;
 use crate::plan::planner::Planner;
 use crate::plan::steps::{Plan, Solve};
+use crate::plan::{cost, parts};
 use crate::recipe::graph::Link;
 use crate::store::solutions::{Begun, Store};
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -118,10 +118,12 @@ impl Engine<'_> {
         sources.expect(order.source_work);
         let make = |link: Link, tile: Window| {
             let plan = planner.source(link, tile)?;
+            let recipe = &self.resolved.recipe;
+            let _heights = parts::read(&plan, recipe, parts::memory_of_tile(&plan, recipe))?;
             // The solution is kept, its sources are not. An exact solution has exact sources.
             let preview = self.preview.filter(|preview| preview.is_approximate(order.node));
             let engine = Engine { keeps_grids: false, preview, ..*self };
-            engine.steps(&plan, there, &sources.part(cost::steps(&plan, &self.resolved.recipe)))
+            engine.steps(&plan, there, &sources.part(cost::steps(&plan, recipe)))
         };
         let links = &self.resolved.graph.links[order.node];
         let tiles = Tiles { spec: solver.spec(), links, order, make: &make, scratch: self.kept.store.scratch() };

@@ -60,6 +60,12 @@ pub fn memory(plan: &Plan, recipe: &Recipe) -> u64 {
     needs(plan, recipe).iter().fold(0, |sum, need| sum.saturating_add(need.file.memory(need.window.as_ref())))
 }
 
+/// Memory of the windows of files that a tile of a solver's source reads, in bytes. Twice as much as without holes, since
+/// heights around large holes are not known before.
+pub fn memory_of_tile(plan: &Plan, recipe: &Recipe) -> u64 {
+    memory(plan, recipe).saturating_mul(2)
+}
+
 /// Reads the windows of files that a plan reads. They are available as long as the result is held.
 ///
 /// # Errors
@@ -76,7 +82,7 @@ pub fn read(plan: &Plan, recipe: &Recipe, allowed: u64) -> Result<Vec<Arc<Prepar
 }
 
 /// Checks that a plan uses only heights that have been read from their files. Solvers read the whole world, and points
-/// may be anywhere in it, so they need whole files.
+/// may be anywhere in it: a part of a file is not enough for them.
 ///
 /// # Errors
 /// [`ErrorKind::Part`] if it needs other heights.

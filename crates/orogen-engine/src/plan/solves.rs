@@ -3,7 +3,7 @@
 use super::domain::Domain;
 use super::planner::Planner;
 use super::steps::Solve;
-use super::{cost, memory};
+use super::{cost, memory, parts};
 use crate::recipe::graph::Link;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
@@ -41,7 +41,8 @@ impl Planner<'_> {
         let mut source_work = 0.0;
         for link in self.resolved.graph.links[node].iter().filter(|link| **link != Link::None) {
             let plan = self.source(*link, window)?;
-            tile = tile.max(memory::steps(&plan, &self.resolved.recipe, self.threads));
+            let steps = memory::steps(&plan, &self.resolved.recipe, self.threads);
+            tile = tile.max(steps.saturating_add(parts::memory_of_tile(&plan, &self.resolved.recipe)));
             samples += (plan.samples() as f64 * share) as u64;
             source_work += cost::steps(&plan, &self.resolved.recipe) * share;
             reads.append(&mut plan.solvers_read());

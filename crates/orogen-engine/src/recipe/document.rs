@@ -306,15 +306,20 @@ impl Recipe {
     }
 
     /// Reads the files that its nodes name. Each is read only once; their heights together take at most `allowed`
-    /// bytes. Of large files of heights, requests read the windows that they need, unless a node reads the whole world
-    /// or its results are stored: then all heights are needed, for the results or for their keys.
+    /// bytes. Of large files of heights, requests read the windows that they need, unless results are stored: then all
+    /// heights are needed for the keys of the results. If a solver reads a file of more than half of `allowed` bytes, it
+    /// reads windows, too, and keys contain the [identity of the file](DemFile::place).
     ///
     /// # Errors
     /// If one cannot be read: the message contains the node, and the location if the recipe was read from a text.
     pub fn load(&mut self, allowed: u64) -> Result<()> {
-        let is_stored = |named: &NamedNode| matches!(named.node.op(), Op::Solver(_) | Op::Levelled(_));
-        let reads_windows = !self.nodes.iter().any(is_stored);
-        self.load_files(allowed, reads_windows)
+        let has = |class: fn(&Op) -> bool| self.nodes.iter().any(|named| class(&named.node.op()));
+        let windows_above = match (has(|op| matches!(op, Op::Levelled(_))), has(|op| matches!(op, Op::Solver(_)))) {
+            (true, _) => None,
+            (false, true) => Some(allowed / 2),
+            (false, false) => Some(0),
+        };
+        self.load_files(allowed, windows_above)
     }
 
     /// The recipe with all heights of its files, for work that checks them or is identified by them; `None` if it has
@@ -328,11 +333,12 @@ impl Recipe {
             return Ok(None);
         }
         let mut recipe = self.clone();
-        recipe.load_files(allowed, false)?;
+        recipe.load_files(allowed, None)?;
         Ok(Some(recipe))
     }
 
-    fn load_files(&mut self, allowed: u64, reads_windows: bool) -> Result<()> {
+    /// [`Recipe::load`], with windows of files of more than `windows_above` bytes.
+    fn load_files(&mut self, allowed: u64, windows_above: Option<u64>) -> Result<()> {
         // One file may be heights for one node and a picture for another.
         let mut known: BTreeMap<(PathBuf, FileKind, Option<u32>), Arc<PreparedDem>> = BTreeMap::new();
         let mut drawings: BTreeMap<(PathBuf, FileKind), Arc<Drawing>> = BTreeMap::new();
@@ -367,12 +373,18 @@ impl Recipe {
                     continue;
                 }
                 let is_read = file.ground().is_some() && file.dem_file().is_none();
-                if path.1 == FileKind::Heights && reads_windows && !is_read {
+                if let Some(above) = windows_above
+                    && path.1 == FileKind::Heights
+                    && !is_read
+                {
                     let key = (path.0.clone(), band);
                     let found = match (file.dem_file(), files.get(&key)) {
                         (Some(own), _) => Some(Arc::clone(own)),
                         (None, Some(known)) => known.clone(),
-                        (None, None) => DemFile::open(&path.0, band, left).map_err(in_node)?.map(Arc::new),
+                        (None, None) => {
+                            let opened = DemFile::open(&path.0, band, left).map_err(in_node)?;
+                            opened.filter(|file| file.whole_memory() > above).map(Arc::new)
+                        }
                     };
                     files.insert(key, found.clone());
                     if let Some(found) = found {

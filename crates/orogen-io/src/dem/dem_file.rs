@@ -94,6 +94,11 @@ impl DemFile {
         self.whole.get().map_or(0, |whole| whole.memory())
     }
 
+    /// Memory of all heights, in bytes.
+    pub fn whole_memory(&self) -> u64 {
+        self.outline.whole_memory()
+    }
+
     /// Memory for reading the heights in a window, or all heights, in bytes; without those that are kept. Around large
     /// holes more is needed.
     pub fn memory(&self, window: Option<&Window>) -> u64 {
