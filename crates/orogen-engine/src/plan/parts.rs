@@ -60,8 +60,8 @@ pub fn memory(plan: &Plan, recipe: &Recipe) -> u64 {
     needs(plan, recipe).iter().fold(0, |sum, need| sum.saturating_add(need.file.memory(need.window.as_ref())))
 }
 
-/// Memory of the windows of files that a tile of a solver's source reads, in bytes. Twice as much as without holes, since
-/// heights around large holes are not known before.
+/// Memory of the windows of files that a tile of a solver's source reads, in bytes. Twice as much as without holes,
+/// since heights around large holes are not known before.
 pub fn memory_of_tile(plan: &Plan, recipe: &Recipe) -> u64 {
     memory(plan, recipe).saturating_mul(2)
 }

@@ -307,8 +307,8 @@ impl Recipe {
 
     /// Reads the files that its nodes name. Each is read only once; their heights together take at most `allowed`
     /// bytes. Of large files of heights, requests read the windows that they need, unless results are stored: then all
-    /// heights are needed for the keys of the results. If a solver reads a file of more than half of `allowed` bytes, it
-    /// reads windows, too, and keys contain the [identity of the file](DemFile::place).
+    /// heights are needed for the keys of the results. If a solver reads a file of more than half of `allowed` bytes,
+    /// it reads windows, too, and keys contain the [identity of the file](DemFile::place).
     ///
     /// # Errors
     /// If one cannot be read: the message contains the node, and the location if the recipe was read from a text.
