@@ -59,6 +59,8 @@ def options() -> str:
                 raise ValueError(f"an option must not be called {name}")
             if work == "render" and name == "window":
                 continue
+            # A list of names, as a text with commas or as a list.
+            kind = "str | Sequence[str]" if name == "layers" else kind
             usual = f" [default: {default}]" if default and "[default" not in text else ""
             lines.append(f"    {name}: {kind} | None")
             lines.append(f'    """{described(about(text) + usual, "    ")}"""')

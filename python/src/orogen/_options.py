@@ -385,7 +385,7 @@ class TilemapOptions(TypedDict, total=False):
 class BuildOptions(TypedDict, total=False):
     """Keywords of `World.build`."""
 
-    layers: str | None
+    layers: str | Sequence[str] | None
     """Layers to build, separated by commas [default: height]"""
     part: str | None
     """Build only part K of N: N processes, also on other machines, make one result together, and the last one
