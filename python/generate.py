@@ -54,6 +54,8 @@ def options() -> str:
         if work in ("export", "map"):
             declared |= {name: rest for name, *rest in _orogen.declared("layer") if name not in declared}
         lines = [f'class {work.title()}Options(TypedDict, total=False):', f'    """Keywords of `{method}`."""\n']
+        if work == "export":
+            declared |= {name: rest for name, *rest in _orogen.declared("engine")}
         for name, (kind, default, text) in sorted(declared.items()):
             if keyword.iskeyword(name):
                 raise ValueError(f"an option must not be called {name}")

@@ -137,6 +137,10 @@ def test_files(hills: orogen.World, tmp_path: Path) -> None:
     deep = hills.export(tmp_path / "heights.png", size=64, bits=16)
     assert deep.read_bytes()[24] == 16
     hills.export(tmp_path / "light.png", "hillshade", size=64, azimuth=90.0)
+    hills.export(tmp_path / "land.png", target="unreal", tiles=(2, 1))
+    assert (tmp_path / "land_x1_y0.png").is_file()
+    with pytest.raises(orogen.errors.RequestError, match="tiles needs target"):
+        hills.export(tmp_path / "land.png", tiles=2)
     hills.map(tmp_path / "map.svg", contours=100, cell=240, title="Hills")
     assert "Hills" in (tmp_path / "map.svg").read_text()
     hills.render(tmp_path / "view.png", size=(160, 90), samples=1, cell=240)

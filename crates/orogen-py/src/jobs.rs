@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use orogen::builder::run::Start;
 use orogen::builder::{Build, BuildSpec, Form};
+use orogen::export::targets::job::EngineJob;
 use orogen::export::{ExportJob, registry};
 use orogen::io::file::{self, Existing, OutputPolicy};
 use orogen::jobs::blocks::LuantiFolder;
@@ -32,6 +33,7 @@ struct Work<'a> {
     policy: OutputPolicy,
     options: Options,
     layer_options: Options,
+    engine_options: Options,
 }
 
 /// Does the work that `name` names and writes its files; returns warnings.
@@ -50,7 +52,7 @@ pub fn write(
     options: &Bound<'_, PyDict>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Vec<String>> {
-    let [options, layer_options] = split(name, options)?;
+    let [options, layer_options, engine_options] = split(name, options)?;
     let write = match name {
         "export" => export,
         "map" => map,
@@ -63,7 +65,7 @@ pub fn write(
     let world = world.get();
     let policy = policy(overwrite).protecting(&world.inputs).protecting(options.files());
     let view = choice.view(py)?;
-    let work = Work { world, path: &path, layer, title, view, policy, options, layer_options };
+    let work = Work { world, path: &path, layer, title, view, policy, options, layer_options, engine_options };
     run(py, progress, |progress| write(&work, progress))
 }
 
@@ -74,17 +76,20 @@ impl Work<'_> {
     }
 }
 
-/// A layer in the format of the file's extension.
+/// A layer in the format of the file's extension, or in that of a game engine.
 fn export(work: &Work, progress: &Progress) -> Result<Vec<String>> {
     let job = ExportJob::new(registry::of_path(work.path)?)
         .with_layer(work.layer)
         .with_options(work.options.clone())
-        .with_layer_options(work.layer_options.clone())
-        .with_window(work.window(&work.view)?);
+        .with_layer_options(work.layer_options.clone());
     job.check()?;
     let world = work.world.prepared(|recipe| job.prepare(recipe))?;
-    let written = job.to_file(&world, &work.policy.output(work.path)?, progress)?;
-    Ok(written.count.check(&format!("the layer `{}`", work.layer))?.into_iter().collect())
+    let output = work.policy.output(work.path)?;
+    let count = match EngineJob::chosen(&job, &work.engine_options, &work.view, world.recipe())? {
+        Some(engine) => engine.run(&world, &output, progress)?.count,
+        None => job.with_window(work.window(&work.view)?).to_file(&world, &output, progress)?.count,
+    };
+    Ok(count.check(&format!("the layer `{}`", work.layer))?.into_iter().collect())
 }
 
 /// A map sheet.

@@ -3,6 +3,7 @@
 use orogen::builder::BuildSpec;
 use orogen::export::derived::list;
 use orogen::export::registry;
+use orogen::export::targets::job::EngineJob;
 use orogen::fit::FitJob;
 use orogen::jobs::noise::NoiseJob;
 use orogen::jobs::{BlocksJob, MapJob, RenderJob};
@@ -18,6 +19,7 @@ use crate::failure::raised;
 pub fn of_work(work: &str) -> Vec<&'static OptionSpec> {
     match work {
         "export" => registry::options().into_iter().map(|(spec, _)| spec).collect(),
+        "engine" => EngineJob::OPTIONS.iter().collect(),
         "layer" => list::options().into_iter().map(|(spec, _)| spec).collect(),
         "map" => MapJob::OPTIONS.iter().collect(),
         "render" => RenderJob::OPTIONS.iter().collect(),
@@ -95,21 +97,28 @@ pub fn of_keywords(specs: &[&'static OptionSpec], keywords: &Bound<'_, PyDict>) 
     Options::of(specs.iter().copied(), given).map_err(|error| raised(py, &error))
 }
 
-/// The options of a kind of work, and those of the derived layer that it writes or draws.
+/// The options of a kind of work, those of the derived layer that it writes or draws, and those of the game engine that
+/// an export is for.
 ///
 /// # Errors
 /// Those of [`of_keywords`].
-pub fn split(work: &str, keywords: &Bound<'_, PyDict>) -> PyResult<[Options; 2]> {
-    let [own, of_layer] = [PyDict::new(keywords.py()), PyDict::new(keywords.py())];
-    let specs = of_work(work);
-    let layer_specs = if matches!(work, "export" | "map") { of_work("layer") } else { Vec::new() };
+pub fn split(work: &str, keywords: &Bound<'_, PyDict>) -> PyResult<[Options; 3]> {
+    let groups: [&[&str]; 3] = match work {
+        "export" => [&["export"], &["layer"], &["engine"]],
+        "map" => [&["map"], &["layer"], &[]],
+        _ => [&[work], &[], &[]],
+    };
+    let specs = groups.map(|works| works.iter().flat_map(|work| of_work(work)).collect::<Vec<_>>());
+    let given = [(); 3].map(|()| PyDict::new(keywords.py()));
     for (key, value) in keywords.iter() {
         let name: String = key.extract::<String>()?.replace('_', "-");
-        let knows = |specs: &[&OptionSpec]| specs.iter().any(|spec| spec.name == name);
-        let to = if !knows(&specs) && knows(&layer_specs) { &of_layer } else { &own };
-        to.set_item(key, value)?;
+        let knows = |specs: &Vec<&OptionSpec>| specs.iter().any(|spec| spec.name == name);
+        // Unknown ones are refused with the names of the first group.
+        let group = specs.iter().position(knows).unwrap_or(0);
+        given[group].set_item(key, value)?;
     }
-    Ok([of_keywords(&specs, &own)?, of_keywords(&layer_specs, &of_layer)?])
+    let [own, of_layer, of_engine] = [0, 1, 2].map(|group| of_keywords(&specs[group], &given[group]));
+    Ok([own?, of_layer?, of_engine?])
 }
 
 /// The text of a value, as a command line would have it; `None` if the option is not given.

@@ -117,12 +117,18 @@ class ExportOptions(TypedDict, total=False):
     surfaces: bool | None
     """Use the colors of the recipe's surfaces (or of the standard ones) instead of map colors; in glb with
     roughness, occlusion, and normal maps for meshes with few triangles"""
+    target: str | None
+    """Game engine to write for: sets format, scale, row order and sizes, and prints the settings for its import
+    dialog. size is the number of samples along each side, of each tile if there are several [default: as many as
+    the world has]"""
     target_height: float | None
     """Height of the target above the ground, in metres [default: 0]"""
     text: str | None
     """Letters on the southern side of the base, as large as it has room for [default: none]"""
     text_style: str | None
     """Letters of text: raised, which stand out of the side, or engraved [default: raised]"""
+    tiles: int | tuple[int, int] | None
+    """Number of tiles for the engine, east and south; adjacent tiles share the samples along their common edge"""
     turbidity: float | None
     """Linke turbidity of the air: 1 clean and dry, 6 hazy [default: 3]"""
     water: bool | None
