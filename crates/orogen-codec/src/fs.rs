@@ -66,6 +66,15 @@ pub fn is_taken(path: &Path) -> bool {
     symlink_metadata(path).is_ok()
 }
 
+/// `path`, relative to `folder` unless it is absolute or a URL.
+#[must_use]
+pub fn joined(folder: &Path, path: impl AsRef<Path>) -> PathBuf {
+    match is_remote(&path) {
+        true => path.as_ref().to_path_buf(),
+        false => folder.join(path),
+    }
+}
+
 /// The folder that contains `path`.
 #[must_use]
 pub fn folder(path: &Path) -> &Path {

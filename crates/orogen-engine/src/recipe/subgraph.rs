@@ -84,7 +84,7 @@ impl<'a> Origin<'a> {
                 "there is no preset `{name}`; {hint} A file is named with its extension, such as \"{name}.toml\""
             ));
         }
-        let path = self.folder.clone().unwrap_or_default().join(name);
+        let path = fs::joined(&self.folder.clone().unwrap_or_default(), name);
         let known = preset.map_or_else(|| known_as(&path), |preset| preset.name.to_string());
         if let Some(first) = self.chain.iter().position(|other| *other == known) {
             let circle: Vec<&str> = self.chain[first..].iter().chain([&known]).map(String::as_str).collect();

@@ -7,6 +7,7 @@ use super::dem_file::DemFile;
 use super::prepared::PreparedDem;
 use crate::format::drawing::Drawing;
 use crate::format::outlines::DrawingKind;
+use crate::fs;
 use orogen_grid::error::Location;
 
 /// A file of heights, or of another kind, named by a recipe. Its content is read once, when the world is opened; from a
@@ -115,7 +116,7 @@ impl FileRef {
     #[must_use]
     pub fn path(&self) -> PathBuf {
         match &self.folder {
-            Some(folder) => folder.join(&self.path),
+            Some(folder) => fs::joined(folder, &self.path),
             None => PathBuf::from(&self.path),
         }
     }
@@ -124,6 +125,7 @@ impl FileRef {
     #[must_use]
     pub fn text(&self) -> String {
         match &self.folder {
+            Some(_) if fs::is_remote(self.path()) => self.path().display().to_string(),
             Some(_) => std::path::absolute(self.path()).unwrap_or_else(|_| self.path()).display().to_string(),
             None => self.path.clone(),
         }

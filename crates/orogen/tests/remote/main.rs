@@ -250,6 +250,13 @@ fn heights_are_read_in_parts_from_s3_and_http() {
         assert!(part.grid.data() == expect.data(), "{url}");
     }
     assert!(web.sent() < bytes.len() as u64 / 4, "{} of {} bytes", web.sent(), bytes.len());
+    // In a recipe, in whatever folder it is.
+    let text = format!(
+        "orogen = 1\n[world]\nsize = 14990\ncell = 10\n[nodes.land]\nop = \"dem\"\npath = \"{web_url}\"\n[outputs]\nheight = \"land\"\n"
+    );
+    std::fs::write(folder.join("recipe.toml"), text).unwrap();
+    let recipe = orogen::open(folder.join("recipe.toml")).unwrap();
+    assert!(recipe.window("height", &window).unwrap().data() == expect.data());
     // Another file under the same name while it is read.
     let world = orogen::open(&web_url).unwrap();
     web.put("maps/land.tif", bytes[..bytes.len() - 1].to_vec());
