@@ -42,8 +42,8 @@ def fill(
     path
         The result, such as a GeoTIFF: float32 heights.
     memory
-        Maximum memory, in bytes or as a text such as "1GiB". What does not fit is in the system's temporary folder: two
-        to three times the size of the heights. Method with little memory: Barnes (2016).
+        Maximum memory, in bytes or as a text such as "1GiB". What does not fit is in the system's temporary folder: for
+        `fill` three times the size of the heights, for `accumulate` six times. Method with little memory: Barnes (2016).
     threads
         Number of threads; all cores by default. Each needs some memory.
     overwrite
