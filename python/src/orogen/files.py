@@ -5,8 +5,8 @@ disk, and write a file of the same samples at the same place. They return the pa
 
 Heights are those of `World(source)`: samples without a height are interpolated. Water leaves two samples beyond the
 border of the file, where the land is as high as at the border: results are those of `orogen.hydrology` on
-`np.pad(heights, 2, mode="edge")`, but for ties between directions. Work can be interrupted with Ctrl-C; `progress` is a function that is called with the
-share that is done, or True for a bar of tqdm.
+`np.pad(heights, 2, mode="edge")`, but for ties between directions. Work can be interrupted with Ctrl-C; `progress` is a
+function that is called with the share that is done, or True for a bar of tqdm.
 
 >>> from orogen import files
 >>> files.fill("alps.tif", "filled.tif", memory="1GiB")
@@ -43,7 +43,7 @@ def fill(
         The result, such as a GeoTIFF: float32 heights.
     memory
         Maximum memory, in bytes or as a text such as "1GiB". What does not fit is in the system's temporary folder: for
-        `fill` three times the size of the heights, for `accumulate` six times. Method with little memory: Barnes (2016).
+        `fill` three times the size of the heights, for `accumulate` six times. Method then: Barnes (2016).
     threads
         Number of threads; all cores by default. Each needs some memory.
     overwrite
