@@ -381,13 +381,10 @@ impl Recipe {
                     let found = match (file.dem_file(), files.get(&key)) {
                         (Some(own), _) => Some(Arc::clone(own)),
                         (None, Some(known)) => known.clone(),
-                        (None, None) => {
-                            let opened = DemFile::open(&path.0, band, left).map_err(in_node)?;
-                            opened.filter(|file| file.whole_memory() > above).map(Arc::new)
-                        }
+                        (None, None) => DemFile::open(&path.0, band, left).map_err(in_node)?.map(Arc::new),
                     };
                     files.insert(key, found.clone());
-                    if let Some(found) = found {
+                    if let Some(found) = found.filter(|file| file.whole_memory() > above) {
                         file.hold_file(found);
                         continue;
                     }
