@@ -45,12 +45,6 @@ pub fn is_present(path: &Path) -> bool {
     metadata(path).is_ok()
 }
 
-/// A folder for temporary files that end up in `folder`: itself, or the system's temporary folder for objects.
-#[must_use]
-pub fn temporary_folder_for(folder: &Path) -> PathBuf {
-    if is_remote(folder) { temporary_folder() } else { folder.to_path_buf() }
-}
-
 /// The system's temporary folder; an empty path on a host without files.
 #[must_use]
 pub fn temporary_folder() -> PathBuf {

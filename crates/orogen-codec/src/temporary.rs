@@ -35,7 +35,7 @@ impl Temporary {
     pub fn create(folder: &Path) -> io::Result<(Temporary, File)> {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         // What becomes an object is a file of the system until then.
-        let folder = &fs::temporary_folder_for(folder);
+        let folder = &if fs::is_remote(folder) { fs::temporary_folder() } else { folder.to_path_buf() };
         let lock = FolderLock::hold(folder)?;
         for _ in 0..NAMES {
             let count = COUNT.fetch_add(1, Ordering::Relaxed);

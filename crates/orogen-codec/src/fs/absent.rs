@@ -282,6 +282,14 @@ functions! {
     symlink_metadata(path) -> Metadata;
 }
 
+/// Writes a file that must not exist.
+///
+/// # Errors
+/// Always.
+pub fn write_new(_: impl AsRef<Path>, _: impl AsRef<[u8]>) -> io::Result<()> {
+    no()
+}
+
 /// Like `std::fs::write`.
 ///
 /// # Errors

@@ -16,7 +16,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::SystemTime;
 
 /// The start of paths that name objects.
-pub const SCHEMES: [&str; 7] = ["s3://", "gs://", "az://", "abfs://", "abfss://", "http://", "https://"];
+const SCHEMES: [&str; 7] = ["s3://", "gs://", "az://", "abfs://", "abfss://", "http://", "https://"];
 
 /// Whether a path names an object, or a folder of objects.
 #[must_use]

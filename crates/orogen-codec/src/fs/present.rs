@@ -582,6 +582,18 @@ pub fn hard_link(from: impl AsRef<Path>, to: impl AsRef<Path>) -> io::Result<()>
     }
 }
 
+/// Writes a file that must not exist.
+///
+/// # Errors
+/// [`io::ErrorKind::AlreadyExists`] if it exists, or if it cannot be written.
+pub fn write_new(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> io::Result<()> {
+    let (path, bytes) = (path.as_ref(), bytes.as_ref());
+    match is_remote(path) {
+        true => objects::store()?.write(&url(path)?, &mut &bytes[..], bytes.len() as u64, true),
+        false => OpenOptions::new().write(true).create_new(true).open(path)?.write_all(bytes),
+    }
+}
+
 /// As `std::fs::write`.
 ///
 /// # Errors

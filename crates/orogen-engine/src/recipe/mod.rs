@@ -13,6 +13,7 @@ mod draft;
 #[doc(hidden)]
 pub mod graph;
 mod json;
+mod named_files;
 #[doc(hidden)]
 pub mod network;
 #[doc(hidden)]

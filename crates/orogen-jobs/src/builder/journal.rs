@@ -146,13 +146,17 @@ impl Journal {
             for line in state.lines() {
                 all.push_str(&text(&line)?);
             }
-            let mut file = File::create(temporary)?;
-            file.write_all(all.as_bytes())?;
-            file.sync_all()?;
-            // A store has no locks: of two builds that begin at the same time, one is refused.
-            match fs::is_remote(path) && !fs::is_file(path) {
-                true => fs::hard_link(temporary, path).and_then(|()| fs::remove_file(temporary))?,
-                false => fs::rename(temporary, path)?,
+            if fs::is_remote(path) {
+                // A store has no locks: of two builds that begin at the same time, one is refused.
+                match fs::is_file(path) {
+                    true => fs::write(path, all)?,
+                    false => fs::write_new(path, all)?,
+                }
+            } else {
+                let mut file = File::create(temporary)?;
+                file.write_all(all.as_bytes())?;
+                file.sync_all()?;
+                fs::rename(temporary, path)?;
             }
             OpenOptions::new().append(true).open(path)
         };

@@ -128,8 +128,11 @@ impl<'a> OutputStore<'a> {
     /// If it cannot be written.
     pub fn file(&self, place: &JobFile, bytes: &[u8]) -> Result<FileDigest> {
         let path = self.work_dir.path(place);
-        let temporary = self.temporary();
         let put = || {
+            if self.work_dir.is_remote() {
+                return (self.put)(&path, bytes);
+            }
+            let temporary = self.temporary();
             (self.put)(&temporary, bytes)?;
             settle(&temporary, &path)
         };
@@ -152,6 +155,9 @@ impl<'a> OutputStore<'a> {
     /// # Errors
     /// If it cannot be written, or `body` fails.
     pub fn assemble(&self, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<FileDigest> {
+        if self.work_dir.is_remote() {
+            return self.assemble_object(body);
+        }
         let (path, temporary) = (self.work_dir.out(), self.temporary());
         let put = || -> io::Result<FileDigest> {
             let mut out = BufWriter::with_capacity(BUFFER, Measured::new(File::create(&temporary)?));
@@ -167,6 +173,18 @@ impl<'a> OutputStore<'a> {
             Ok(digest)
         };
         put().map_err(|cause| file::explain("write", path, &cause))
+    }
+
+    /// [`OutputStore::assemble`] for an object, which is a file of the system until it is complete.
+    fn assemble_object(&self, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<FileDigest> {
+        let mut digest = FileDigest::of(&[]);
+        file::write_whole(self.work_dir.output(), |out| {
+            let mut measured = Measured::new(out);
+            body(&mut measured)?;
+            digest = measured.end().1;
+            Ok(())
+        })?;
+        Ok(digest)
     }
 
     /// Reads a file of a job.
@@ -222,7 +240,7 @@ impl Drop for ClosedAtEnd<'_, '_> {
 
 /// Writes a file.
 pub fn put(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    File::create(path)?.write_all(bytes)
+    fs::write(path, bytes)
 }
 
 /// Moves a file to its place; creates the folder if needed.

@@ -95,15 +95,7 @@ impl WorkDir {
         let mut beside = name.to_os_string();
         beside.push(".build");
         let beside = real.with_file_name(beside);
-        // What becomes an object is a file of the system until then.
-        let temporary = match fs::is_remote(&beside) {
-            true => {
-                static COUNT: AtomicUsize = AtomicUsize::new(0);
-                let count = COUNT.fetch_add(1, Ordering::Relaxed);
-                fs::temporary_folder().join(format!("orogen-build-{}-{count}", std::process::id()))
-            }
-            false => beside.join(TEMPORARY),
-        };
+        let temporary = beside.join(TEMPORARY);
         Ok(WorkDir { output: output.clone(), beside, temporary, out: real, file: is_file })
     }
 
@@ -112,7 +104,7 @@ impl WorkDir {
         WorkDir { temporary: self.temporary.join(format!("part-{number}")), ..self }
     }
 
-    /// Whether the files of the build are objects.
+    /// Whether the files of the build are objects, which need no temporary files.
     pub fn is_remote(&self) -> bool {
         fs::is_remote(&self.out)
     }
@@ -308,9 +300,6 @@ impl WorkDir {
         [SCRATCH, TEMPORARY]
             .iter()
             .try_for_each(|name| remove(&self.beside.join(name), |path| fs::remove_dir_all(path)))?;
-        if self.is_remote() {
-            self.tidy()?;
-        }
         self.drop_parts()
     }
 
