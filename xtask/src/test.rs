@@ -97,7 +97,8 @@ pub fn run(args: &[String]) -> Result {
 /// Runs all ignored tests, without doctests, where `ignore` marks code that is not meant to run.
 fn long(name: Option<&str>) -> Result {
     reasons()?;
-    let targets = format!("test {LIBRARIES} --lib --bins --tests --examples");
+    // Not with `--lib` and `--bins`: they compile the tests of targets with `test = false`, too, which have none.
+    let targets = format!("test {LIBRARIES} --tests --examples");
     let with = |more: &[&str]| {
         let mut command = cargo(&targets);
         command.arg("--").args(name).arg("--ignored").args(more);

@@ -47,6 +47,8 @@ mod builder;
 mod choices;
 mod classic;
 mod fractal;
+#[doc(hidden)]
+pub mod internals;
 mod kernel;
 mod methods;
 mod open_simplex2;
@@ -60,8 +62,6 @@ mod seed;
 pub mod shader;
 mod simplex;
 mod tables;
-#[cfg(test)]
-mod tests;
 mod tiled;
 mod value;
 mod warp;

@@ -21,7 +21,10 @@ pub(crate) fn fill(
 }
 
 /// Runs a program at a chosen level.
-pub(crate) fn fill_at(
+///
+/// # Errors
+/// This machine does not support the level. The inner error is a slice of the wrong length.
+pub fn fill_at(
     level: Level,
     program: &Program,
     points: &Points,

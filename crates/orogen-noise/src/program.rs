@@ -31,7 +31,7 @@ const STEEPEST_WEIGHTED: f32 = 1e16;
 
 /// The source of the numbers at lattice points.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Source {
+pub enum Source {
     /// Interpolated values.
     Value(Fade),
     /// Hashed gradients.
@@ -65,8 +65,10 @@ impl Source {
 
 /// The parameters of cellular noise.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Cellular {
+pub struct Cellular {
+    /// The distance that is used.
     pub distance: Distance,
+    /// The computed value.
     pub feature: Feature,
     /// Share of its cell in which a point is placed, along each axis.
     pub jitter: f32,
@@ -82,7 +84,8 @@ impl Cellular {
     /// distance, because a position farther away would have no point. It is also at most half the sum of the two
     /// nearest distances. Together this is less than 1 (2 / sqrt 3, 4 / 3).
     #[inline]
-    pub(crate) fn bound(self, dims: usize) -> f32 {
+    #[must_use]
+    pub fn bound(self, dims: usize) -> f32 {
         let pick = |bounds: [f32; 3]| bounds[dims.clamp(2, 4) - 2];
         let second = match self.distance {
             Distance::Euclidean => pick([1.581_138_8, 1.732_050_8, 2.0]),
@@ -105,7 +108,7 @@ impl Cellular {
 
 /// One octave in the form of the kernels.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Octave {
+pub struct Octave {
     /// Cells per metre.
     pub frequency: f64,
     /// Offset that is added to position times frequency, in cells.
@@ -143,7 +146,7 @@ pub(crate) struct Octaves {
 
 /// How octaves are combined.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Combine {
+pub enum Combine {
     /// The plain sum.
     Sum,
     /// `start + sign * sum of absolute values`.
@@ -171,9 +174,10 @@ pub(crate) enum Combine {
     },
 }
 
-/// Combinations that are not plain sums (see [`Kind`]).
+/// Combinations that are not plain sums, with the parameters of their [`Kind`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Shape {
+#[allow(missing_docs, reason = "fields are those of `Kind`")]
+pub enum Shape {
     /// The sum of folded values.
     PingPong { strength: f32 },
     /// Each octave is weighted with the product of the previous ones.
@@ -188,7 +192,8 @@ pub(crate) enum Shape {
 
 impl Combine {
     /// Whether octaves displace the positions of later ones. Rows of samples then have no common values.
-    pub(crate) fn moves(self) -> bool {
+    #[must_use]
+    pub fn moves(self) -> bool {
         matches!(self, Combine::Shaped { shape: Shape::Swiss { .. } | Shape::Jordan { .. }, .. })
     }
 
@@ -200,12 +205,16 @@ impl Combine {
 
 /// A noise for the kernels.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Program {
+pub struct Program {
+    /// The source of the numbers at lattice points.
     pub source: Source,
+    /// How octaves are combined.
     pub combine: Combine,
     /// Maximum absolute value of positions, in metres; others are clamped.
     pub limit: f64,
+    /// The number of octaves.
     pub count: usize,
+    /// The octaves, and then unused entries.
     pub all: [Octave; MAX_OCTAVES as usize],
 }
 
@@ -337,7 +346,10 @@ impl Program {
     }
 
     /// The same noise with a period of `period` cells of the first octave along x, y, z and w; 0 for no period.
-    pub(crate) fn tiled(mut self, period: [u32; 4]) -> Result<Program, TileError> {
+    ///
+    /// # Errors
+    /// If an octave does not have an integer number of cells in the period, or if the lattice cannot repeat.
+    pub fn tiled(mut self, period: [u32; 4]) -> Result<Program, TileError> {
         if period == [0; 4] {
             return Ok(self);
         }
@@ -367,7 +379,8 @@ impl Program {
     }
 
     /// The octaves.
-    pub(crate) fn octaves(&self) -> &[Octave] {
+    #[must_use]
+    pub fn octaves(&self) -> &[Octave] {
         &self.all[..self.count.min(self.all.len())]
     }
 }

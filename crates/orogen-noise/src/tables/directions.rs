@@ -24,9 +24,9 @@ const fn scaled<const N: usize>(from: [f64; N], factor: f64) -> [f32; N] {
 }
 
 /// x of the eight directions of the upper half plane, counter-clockwise from 11.25 degrees.
-pub(crate) const X_2D: [f32; 8] = scaled([C1, C3, S3, S1, -S1, -S3, -C3, -C1], SCALE_2D);
+pub const X_2D: [f32; 8] = scaled([C1, C3, S3, S1, -S1, -S3, -C3, -C1], SCALE_2D);
 /// y of these directions.
-pub(crate) const Y_2D: [f32; 8] = scaled([S1, S3, C3, C1, C1, C3, S3, S1], SCALE_2D);
+pub const Y_2D: [f32; 8] = scaled([S1, S3, C3, C1, C1, C3, S3, S1], SCALE_2D);
 
 // A corner of the icosahedron is (0, A, B) in a cyclic order and with any signs. A face center is (D, D, D) or (0, E,
 // F).
@@ -37,23 +37,23 @@ const E: f64 = 0.356_822_089_773_089_93;
 const F: f64 = 0.934_172_358_962_715_8;
 
 /// x of sixteen directions, one of each pair of opposites: six corners and ten face centers of an icosahedron.
-pub(crate) const X_3D: [f32; 16] = scaled([0.0, 0.0, A, A, B, -B, D, D, D, -D, 0.0, 0.0, E, E, F, -F], SCALE_3D);
+pub const X_3D: [f32; 16] = scaled([0.0, 0.0, A, A, B, -B, D, D, D, -D, 0.0, 0.0, E, E, F, -F], SCALE_3D);
 /// y of these directions.
-pub(crate) const Y_3D: [f32; 16] = scaled([A, A, B, -B, 0.0, 0.0, D, D, -D, D, E, E, F, -F, 0.0, 0.0], SCALE_3D);
+pub const Y_3D: [f32; 16] = scaled([A, A, B, -B, 0.0, 0.0, D, D, -D, D, E, E, F, -F, 0.0, 0.0], SCALE_3D);
 /// z of these directions.
-pub(crate) const Z_3D: [f32; 16] = scaled([B, -B, 0.0, 0.0, A, A, D, -D, D, D, F, -F, 0.0, 0.0, E, E], SCALE_3D);
+pub const Z_3D: [f32; 16] = scaled([B, -B, 0.0, 0.0, A, A, D, -D, D, D, F, -F, 0.0, 0.0, E, E], SCALE_3D);
 
 /// x of sixteen directions, one of each pair of opposites: the centers of the 32 edges of a tesseract.
-pub(crate) const X_4D: [f32; 16] =
+pub const X_4D: [f32; 16] =
     scaled([1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0], SCALE_4D);
 /// y of these directions.
-pub(crate) const Y_4D: [f32; 16] =
+pub const Y_4D: [f32; 16] =
     scaled([1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0], SCALE_4D);
 /// z of these directions.
-pub(crate) const Z_4D: [f32; 16] =
+pub const Z_4D: [f32; 16] =
     scaled([1.0, -1.0, 1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0], SCALE_4D);
 /// w of these directions.
-pub(crate) const W_4D: [f32; 16] =
+pub const W_4D: [f32; 16] =
     scaled([0.0, 0.0, 0.0, 0.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0], SCALE_4D);
 
 /// x of twelve directions of the upper half plane, counter-clockwise from 7.5 degrees; four entries are not used.
@@ -79,8 +79,8 @@ const Q: f64 = 0.9348469228350482;
 const R: f64 = 0.3550510257214325;
 
 /// x of these directions without their signs; four entries are not used.
-pub(crate) const OPEN_X_3D: [f32; 16] = scaled([O, O, P, P, P, P, Q, Q, R, 0.0, R, 0.0, 0.0, 0.0, 0.0, 0.0], 1.0);
+pub const OPEN_X_3D: [f32; 16] = scaled([O, O, P, P, P, P, Q, Q, R, 0.0, R, 0.0, 0.0, 0.0, 0.0, 0.0], 1.0);
 /// y of these directions without their signs.
-pub(crate) const OPEN_Y_3D: [f32; 16] = scaled([P, P, O, O, P, P, R, 0.0, Q, Q, 0.0, R, 0.0, 0.0, 0.0, 0.0], 1.0);
+pub const OPEN_Y_3D: [f32; 16] = scaled([P, P, O, O, P, P, R, 0.0, Q, Q, 0.0, R, 0.0, 0.0, 0.0, 0.0], 1.0);
 /// z of these directions without their signs.
-pub(crate) const OPEN_Z_3D: [f32; 16] = scaled([P, P, P, P, O, O, 0.0, R, 0.0, R, Q, Q, 0.0, 0.0, 0.0, 0.0], 1.0);
+pub const OPEN_Z_3D: [f32; 16] = scaled([P, P, P, P, O, O, 0.0, R, 0.0, R, Q, Q, 0.0, 0.0, 0.0, 0.0], 1.0);

@@ -1,4 +1,4 @@
-//! Lookup tables of noises.
+//! Lookup tables of noises. Those that tests read are `pub`.
 
-pub(crate) mod directions;
-pub(crate) mod reference;
+pub mod directions;
+pub mod reference;

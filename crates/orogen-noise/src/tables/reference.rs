@@ -3,17 +3,24 @@
 use std::f32::consts::SQRT_2;
 
 /// The maximum of the 3D reference, which is reached at (.3552566, .5185078, .5), where three ramps of equal sign meet.
-pub(crate) const BOUND_3D: f64 = 1.036_354;
+pub const BOUND_3D: f64 = 1.036_354;
 
-pub(crate) const DIAGONAL_X: [f32; 8] = [1.0, -1.0, 1.0, -1.0, 1.0, 1.0, -1.0, -1.0];
-pub(crate) const DIAGONAL_Y: [f32; 8] = [1.0, 1.0, -1.0, -1.0, 1.0, -1.0, 1.0, -1.0];
-pub(crate) const EIGHT_X: [f32; 8] = [1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 0.0, 0.0];
-pub(crate) const EIGHT_Y: [f32; 8] = [1.0, 1.0, -1.0, -1.0, 0.0, 0.0, 1.0, -1.0];
-pub(crate) const REFERENCE_X: [f32; 16] =
+/// x of the diagonal directions for eight hashes, as ports of the reference have them.
+pub const DIAGONAL_X: [f32; 8] = [1.0, -1.0, 1.0, -1.0, 1.0, 1.0, -1.0, -1.0];
+/// y of these directions.
+pub const DIAGONAL_Y: [f32; 8] = [1.0, 1.0, -1.0, -1.0, 1.0, -1.0, 1.0, -1.0];
+/// x of the eight directions along diagonals and axes.
+pub const EIGHT_X: [f32; 8] = [1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 0.0, 0.0];
+/// y of these directions.
+pub const EIGHT_Y: [f32; 8] = [1.0, 1.0, -1.0, -1.0, 0.0, 0.0, 1.0, -1.0];
+/// x of the gradients of the 3D reference, for sixteen hashes.
+pub const REFERENCE_X: [f32; 16] =
     [1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0];
-pub(crate) const REFERENCE_Y: [f32; 16] =
+/// y of these gradients.
+pub const REFERENCE_Y: [f32; 16] =
     [1.0, 1.0, -1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0];
-pub(crate) const REFERENCE_Z: [f32; 16] =
+/// z of these gradients.
+pub const REFERENCE_Z: [f32; 16] =
     [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 0.0, 1.0, 0.0, -1.0];
 
 /// The maximum of the 4D reference, which is reached at (.644, .482, .5, .508) in a cell, where its gradients agree
@@ -44,7 +51,7 @@ pub(crate) static REFERENCE_4D_W: [f32; 32] = [
 
 /// The permutation of the 2002 reference.
 #[rustfmt::skip]
-pub(crate) static TABLE: [u32; 256] = [
+pub static TABLE: [u32; 256] = [
     151, 160, 137, 91, 90, 15, 131, 13, 201, 95, 96, 53, 194, 233, 7, 225,
     140, 36, 103, 30, 69, 142, 8, 99, 37, 240, 21, 10, 23, 190, 6, 148,
     247, 120, 234, 75, 0, 26, 197, 62, 94, 252, 219, 203, 117, 35, 11, 32,
@@ -65,7 +72,7 @@ pub(crate) static TABLE: [u32; 256] = [
 
 /// sqrt 2 times the sine of 256 angles. The cosine is 64 entries later.
 #[rustfmt::skip]
-pub(crate) static SINE: [f32; 256] = [
+pub static SINE: [f32; 256] = [
     0.0, 0.034706537, 0.06939217, 0.104036, 0.13861717, 0.17311484, 0.20750822, 0.24177662,
     0.27589938, 0.30985594, 0.34362587, 0.3771888, 0.41052452, 0.44361296, 0.4764342, 0.5089684,
     0.5411961, 0.57309777, 0.6046542, 0.63584644, 0.66665566, 0.6970633, 0.7270511, 0.7566009,

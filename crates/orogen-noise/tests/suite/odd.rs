@@ -1,7 +1,7 @@
 //! Odd arguments: every level and every method returns finite numbers within the bounds, or an error.
 
 use crate::noises::{Ask, Columns, Noise, all, at_each_level, damped, fractals, same_bits};
-use orogen_noise::{Depth, Fractal, LengthMismatch, MAX_OCTAVES, Points};
+use orogen_noise::{Basis, Depth, Fractal, LengthMismatch, MAX_OCTAVES, Perlin, Points};
 
 /// Positions that do not occur on maps.
 const PLACES: [f64; 12] = [
@@ -177,4 +177,28 @@ fn wrong_lengths_are_named_and_nothing_is_written() {
             assert_eq!(ask(lattice, Some(Depth::Each(&three))), wrong("z", 3, 6));
         }
     });
+}
+
+#[test]
+fn wrong_lengths_are_named() {
+    let noise = Perlin::default();
+    let points = Points::Lattice { xs: &[0.0, 1.0, 2.0], ys: &[0.0, 1.0] };
+    let wrong = |slice, length| Err(LengthMismatch { slice, length, expected: 6 });
+    assert_eq!(noise.fill(&points, &mut [0.0; 5]), wrong("value", 5));
+    assert_eq!(noise.fill_with_gradient(&points, &mut [0.0; 6], &mut [0.0; 7], &mut [0.0; 6]), wrong("dx", 7));
+    assert_eq!(noise.fill3(&points, &Depth::Each(&[0.0]), &mut [0.0; 6]), wrong("z", 1));
+    let displaced = Points::Displaced { xs: &[0.0, 1.0, 2.0], ys: &[0.0, 1.0], dx: &[0.0; 6], dy: &[0.0; 4] };
+    assert_eq!(noise.fill(&displaced, &mut [0.0; 6]), wrong("dy", 4));
+    let none = Points::Lattice { xs: &[], ys: &[0.0] };
+    assert_eq!((noise.fill(&none, &mut []), none.position(0), none.is_empty()), (Ok(()), None, true));
+    assert_eq!(points.position(5), Some((2.0, 1.0)));
+    assert_eq!(points.position(6), None);
+}
+
+#[test]
+fn names_go_both_ways() {
+    for &basis in Basis::all() {
+        assert_eq!(Basis::from_name(basis.name()), Some(basis));
+    }
+    assert_eq!(Basis::from_name("perl"), None);
 }

@@ -1,11 +1,11 @@
-//! Statistics over many samples of every noise: mean and range, independence of seeds, isotropy, slopes, and smoothness
-//! far away.
+//! Statistics over many samples of every noise: mean and range, independence of seeds and lattice points, isotropy,
+//! slopes, and smoothness far away.
 //!
 //! `cargo test --release -p orogen-noise --test suite statistics -- --ignored --nocapture` uses a hundred times as many
 //! samples.
 
 use crate::noises::{Ask, Noise, Slope, bases, endless, fractals, singles};
-use orogen_noise::{Depth, Fractal, Points};
+use orogen_noise::{Depth, Fractal, Points, White};
 
 /// Number of samples per side of a window.
 const SIDE: usize = 1000;
@@ -107,6 +107,26 @@ fn neighboring_seeds_are_strangers() {
     }
 }
 
+#[test]
+fn neighbors_on_the_lattice_are_strangers() {
+    // One sample per cell, compared along, across, diagonally and mirrored.
+    let side = 500;
+    let at = axis(0.5, 1.0, side);
+    let mut white = vec![0.0; side * side];
+    White::new(9, 1.0).fill(&Points::Lattice { xs: &at, ys: &at }, &mut white).unwrap();
+    for (dx, dy) in [(1, 0), (0, 1), (1, 1), (2, 0), (0, 2), (7, 3), (64, 0), (0, 64), (256, 0), (0, 256)] {
+        let n = (side - dx) * (side - dy);
+        let pick = |ox: usize, oy: usize| -> Vec<f32> {
+            (0..n).map(|k| white[(k / (side - dx) + oy) * side + k % (side - dx) + ox]).collect()
+        };
+        let found = correlation(&pick(0, 0), &pick(dx, dy));
+        // Four standard deviations of unrelated numbers.
+        assert!(found.abs() < 4.0 / (n as f64).sqrt(), "({dx}, {dy}): {found}");
+    }
+    let mirrored: Vec<f32> = (0..side * side).map(|k| white[k % side * side + k / side]).collect();
+    assert!(correlation(&white, &mirrored).abs() < 0.02);
+}
+
 /// The maximum dependence on direction, in percent, of the mean squared difference of two samples at a distance.
 fn anisotropy(noise: &Noise, distance: f64) -> f64 {
     const DIRECTIONS: usize = 16;
@@ -166,7 +186,7 @@ fn differences(noise: &Noise, at: [&[f64]; 3], along: usize, deep: bool) -> Vec<
 }
 
 /// Noises with creases are compared with reference implementations in f64 instead, which work closer to the creases
-/// (src/tests/twins.rs).
+/// (twins.rs).
 #[test]
 fn slopes_are_those_of_the_values() {
     // Positions that f64 represents exactly together with their steps.

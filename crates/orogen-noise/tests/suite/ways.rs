@@ -2,7 +2,7 @@
 //! every level.
 
 use crate::noises::{Ask, Columns, Noise, all, at_each_level, same_bits};
-use orogen_noise::{Depth, Fractal, Points};
+use orogen_noise::{Depth, Falloff, Fractal, Kind, Points};
 
 /// Columns and rows of samples, and a depth.
 struct Window {
@@ -104,6 +104,22 @@ fn every_way_of_asking_gives_the_same_bits_at_every_level() {
         }
     });
     assert!(expected.iter().flat_map(|columns| &columns[0]).all(|x| x.abs() <= 1.0));
+}
+
+#[test]
+fn chunks_join_without_a_seam() {
+    let noise = Fractal::new(0, 31.0).with_kind(Kind::Weighted { k: 1.0, falloff: Falloff::SquareRoot });
+    let axis = |start: f64, cell: f64, count: usize| (0..count).map(|i| start + i as f64 * cell).collect::<Vec<f64>>();
+    let (xs, ys) = (axis(-1234.5, 1.0 / 3.0, 300), axis(77.0, 0.1, 40));
+    let mut whole = vec![0.0; xs.len() * ys.len()];
+    noise.fill(&Points::Lattice { xs: &xs, ys: &ys }, &mut whole).unwrap();
+    for (x, y, width, height) in [(0, 0, 300, 1), (13, 5, 1, 30), (255, 0, 45, 40), (100, 39, 17, 1), (1, 1, 280, 33)] {
+        let mut part = vec![0.0; width * height];
+        noise.fill(&Points::Lattice { xs: &xs[x..x + width], ys: &ys[y..y + height] }, &mut part).unwrap();
+        for (k, &value) in part.iter().enumerate() {
+            assert_eq!(value.to_bits(), whole[(y + k / width) * xs.len() + x + k % width].to_bits());
+        }
+    }
 }
 
 /// Windows larger than the caches are stored past them, in whole registers from an aligned address on. The result

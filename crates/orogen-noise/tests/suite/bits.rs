@@ -1,23 +1,12 @@
 //! Tests of every noise: the bits are the same at every level, with every method, and for every division into calls.
 
-use crate::kernel::fill::Fill;
-use crate::kernel::outputs::Outputs;
-use crate::program::Program;
-use crate::tests::common::programs;
-use crate::{Depth, Level, Points};
-use orogen_simd::dispatch_at;
+use crate::programs::{programs, run};
+use orogen_noise::internals::Program;
+use orogen_noise::{Depth, Level, Points};
 
 /// Value and slopes at the points, as bits.
-fn run(level: Level, program: &Program, points: Points, depths: &[Depth], slopes: bool) -> [Vec<u32>; 5] {
-    let n = points.len();
-    let mut out = [0; 5].map(|_| vec![f32::NAN; n]);
-    let [value, dx, dy, dz, dw] = &mut out;
-    let dz: &mut [f32] = if depths.is_empty() { &mut [] } else { dz };
-    let dw: &mut [f32] = if depths.len() < 2 { &mut [] } else { dw };
-    let outputs = Outputs { value, slopes: slopes.then_some([dx, dy, dz, dw]) };
-    let fill = Fill { program, points, depths, outputs };
-    dispatch_at(level, fill).unwrap();
-    out.map(|values| values.into_iter().map(f32::to_bits).collect())
+fn bits(level: Level, program: &Program, points: Points, depths: &[Depth], slopes: bool) -> [Vec<u32>; 5] {
+    run(level, program, &points, depths, slopes).map(|values| values.into_iter().map(f32::to_bits).collect())
 }
 
 fn axis(start: f64, cell: f64, count: usize) -> Vec<f64> {
@@ -46,7 +35,7 @@ fn every_machine_and_every_way_of_asking_gives_the_same_bits() {
             let slices = &[Depth::Slice(z[0]), Depth::Slice(w[0])][..dims - 2];
             let each = &[Depth::Each(&z), Depth::Each(&w)][..dims - 2];
             for (name, program) in programs(wavelength, dims) {
-                let expected = run(Level::Scalar, &program, scattered, each, true);
+                let expected = bits(Level::Scalar, &program, scattered, each, true);
                 assert!(
                     expected.iter().take(1 + dims).flatten().all(|&bits| f32::from_bits(bits).is_finite()),
                     "{name}"
@@ -56,7 +45,7 @@ fn every_machine_and_every_way_of_asking_gives_the_same_bits() {
                         [(lattice, slices), (displaced, slices), (scattered, slices), (lattice, each)]
                     {
                         for slopes in [true, false] {
-                            let found = run(level, &program, points, depths, slopes);
+                            let found = bits(level, &program, points, depths, slopes);
                             for place in 0..if slopes { 1 + dims } else { 1 } {
                                 assert!(
                                     found[place] == expected[place],

@@ -1,9 +1,9 @@
 //! Tests of cellular noise against an exhaustive search in f64, and of its bounds.
 
-use crate::program::{Cellular, Octave, Source};
-use crate::tests::common::Rng;
-use crate::tests::twins::hash;
-use crate::{Depth, Distance, Feature, Points, Worley};
+use crate::rng::Rng;
+use crate::twins::hash;
+use orogen_noise::internals::{Cellular, Octave, Source, program};
+use orogen_noise::{Depth, Distance, Feature, Points, Worley};
 
 const DISTANCES: [Distance; 3] = [Distance::Euclidean, Distance::Manhattan, Distance::Chebyshev];
 const FEATURES: [Feature; 6] =
@@ -15,6 +15,7 @@ fn measure(distance: Distance, way: &[f64]) -> f64 {
         Distance::Euclidean => way.iter().map(|x| x * x).sum::<f64>().sqrt(),
         Distance::Manhattan => sizes.sum(),
         Distance::Chebyshev => sizes.fold(0.0, f64::max),
+        _ => unreachable!("{distance:?} has no reference implementation"),
     }
 }
 
@@ -67,6 +68,7 @@ fn twin(octave: &Octave, cellular: Cellular, at: &[f64]) -> (f64, f64) {
                 .fold(f64::MAX, f64::min)
         }
         Feature::Edge => (second - first) / 2.0,
+        feature => unreachable!("{feature:?} has no reference implementation"),
     };
     (raw * 2.0 / f64::from(cellular.bound(at.len())) - 1.0, second - first)
 }
@@ -77,8 +79,8 @@ fn no_nearer_point_is_ever_missed() {
         for distance in DISTANCES {
             for feature in FEATURES {
                 for jitter in [1.0, 0.6] {
-                    let noise = Worley { seed: 5, wavelength: 37.0, distance, feature, jitter };
-                    let program = noise.program(dims);
+                    let noise = Worley::new(5, 37.0).with_distance(distance).with_feature(feature).with_jitter(jitter);
+                    let program = program(noise.prepare_in(dims));
                     let Source::Worley(cellular) = program.source else { unreachable!() };
                     let mut rng = Rng(8);
                     let n = [500, 80, 8][dims - 2];
@@ -145,7 +147,7 @@ fn values_fill_the_range_and_average_out() {
     let mut out = vec![f32::NAN; points.len()];
     for distance in DISTANCES {
         for feature in FEATURES {
-            let noise = Worley { distance, feature, seed: 9, ..Default::default() };
+            let noise = Worley::default().with_distance(distance).with_feature(feature).with_seed(9);
             noise.fill(&points, &mut out).unwrap();
             assert!(out.iter().all(|x| x.abs() <= 1.0), "{noise:?}");
             let spread = out.iter().fold((1.0_f32, -1.0_f32), |(low, high), &x| (low.min(x), high.max(x)));

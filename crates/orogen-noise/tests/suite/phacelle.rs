@@ -1,14 +1,14 @@
 //! Tests of Phacelle noise, with a reference implementation in f64, and of domain warps.
 
-use crate::program::Source;
-use crate::tests::common::Rng;
-use crate::tests::twins::hash;
-use crate::{Basis, LengthMismatch, Level, Phacelle, Points, Warp, WarpKind};
+use crate::rng::Rng;
+use crate::twins::hash;
+use orogen_noise::internals::{Source, program};
+use orogen_noise::{Basis, LengthMismatch, Level, Perlin, Phacelle, Points, Warp, WarpKind};
 use std::f64::consts::TAU;
 
 /// Cosine and sine as documented, with every pivot within reach, not only those that the kernel reads.
 fn twin(noise: &Phacelle, at: [f64; 2], way: [f64; 2]) -> [f64; 2] {
-    let program = crate::program::Program::single(Source::Perlin, noise.seed, noise.wavelength * noise.cell);
+    let program = program(Perlin::new(noise.seed, noise.wavelength * noise.cell).prepare_in(2));
     let octave = &program.all[0];
     let length = libm::hypot(way[0], way[1]);
     let side = [-way[1] / length * noise.cell, way[0] / length * noise.cell];
@@ -32,7 +32,7 @@ fn twin(noise: &Phacelle, at: [f64; 2], way: [f64; 2]) -> [f64; 2] {
 
 #[test]
 fn stripes_are_those_of_the_twin_at_every_level_and_way_of_asking() {
-    let noise = Phacelle { seed: 3, wavelength: 37.0, ..Default::default() };
+    let noise = Phacelle::new(3, 37.0);
     let mut rng = Rng(5);
     let (columns, rows) = (61, 9);
     let xs: Vec<f64> = (0..columns).map(|i| f64::from(i) * 10.24 - 300.0).collect();
@@ -62,7 +62,7 @@ fn stripes_are_those_of_the_twin_at_every_level_and_way_of_asking() {
 
 #[test]
 fn stripes_run_along_the_direction_and_average_out() {
-    let noise = Phacelle { seed: 9, wavelength: 10.0, direction: 30.0, normalisation: 1.0, ..Default::default() };
+    let noise = Phacelle::new(9, 10.0).with_direction(30.0).with_normalisation(1.0);
     let side: Vec<f64> = (0..500).map(|i| f64::from(i) * 1.7).collect();
     let mut values = vec![0.0; side.len() * side.len()];
     noise.fill(&Points::Lattice { xs: &side, ys: &side }, &mut values).unwrap();
@@ -91,10 +91,10 @@ fn odd_stripes_are_finite_and_seams_close() {
     let odd = [f64::NAN, f64::INFINITY, -1e300, 0.0, -0.0, 1e9, 5e-324];
     for value in odd {
         for noise in [
-            Phacelle { wavelength: value, ..Default::default() },
-            Phacelle { cell: value, ..Default::default() },
-            Phacelle { normalisation: value, ..Default::default() },
-            Phacelle { direction: value, ..Default::default() },
+            Phacelle::default().with_wavelength(value),
+            Phacelle::default().with_cell(value),
+            Phacelle::default().with_normalisation(value),
+            Phacelle::default().with_direction(value),
         ] {
             for x in odd {
                 assert!(noise.sample(x, 1.5).abs() <= 1.0, "{noise:?} at {x}");
@@ -106,7 +106,7 @@ fn odd_stripes_are_finite_and_seams_close() {
             assert!(cosine.iter().chain(&sine).all(|x| x.abs() <= 1.0), "{noise:?}: {cosine:?} {sine:?}");
         }
     }
-    let noise = Phacelle { wavelength: 10.0, cell: 0.75, period: [4, 3], direction: 20.0, ..Default::default() };
+    let noise = Phacelle::new(0, 10.0).with_cell(0.75).with_period([4, 3]).with_direction(20.0);
     for k in 0..200 {
         let (x, y) = (f64::from(k) * 0.25, f64::from(k * k % 97) * 0.125);
         assert_eq!(noise.sample(x, y), noise.sample(x + 30.0, y - 22.5));
@@ -125,7 +125,7 @@ fn warps_are_the_same_however_they_are_asked_and_keep_their_reach() {
     let (x, y): (Vec<f64>, Vec<f64>) = (0..n).filter_map(|k| lattice.position(k)).unzip();
     for kind in [WarpKind::Independent, WarpKind::Progressive, WarpKind::Gradient] {
         for &basis in Basis::all() {
-            let warp = Warp { kind, basis, wavelength: 80.0, strength: 25.0, ..Default::default() };
+            let warp = Warp::new(0, 80.0).with_kind(kind).with_basis(basis).with_strength(25.0);
             let ask = |points: Points| {
                 let [mut dx, mut dy] = [vec![f32::NAN; n], vec![f32::NAN; n]];
                 warp.displace(&points, &mut dx, &mut dy).unwrap();
@@ -138,7 +138,7 @@ fn warps_are_the_same_however_they_are_asked_and_keep_their_reach() {
         }
     }
     // Without octaves there is no displacement.
-    let still = Warp { octaves: 0, kind: WarpKind::Progressive, strength: f64::NAN, ..Default::default() };
+    let still = Warp::default().with_octaves(0).with_kind(WarpKind::Progressive).with_strength(f64::NAN);
     let (mut dx, mut dy) = (vec![1.0; n], vec![1.0; n]);
     still.displace(&lattice, &mut dx, &mut dy).unwrap();
     assert!(dx.iter().chain(&dy).all(|d| *d == 0.0));

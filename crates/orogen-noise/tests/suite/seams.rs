@@ -1,22 +1,23 @@
 //! Tests of repeating noise: both sides of every seam have the same bits, and noise that cannot repeat returns an
 //! error.
 
-use crate::{Basis, Classic, Depth, Falloff, Fractal, Kind, Perlin, Points, TileError, Tiled, Value, White};
+use orogen_noise::{Basis, Classic, Depth, Falloff, Fractal, Kind, Perlin, Points, TileError, Tiled, Value, White};
 
 const PERIOD: [u32; 3] = [6, 5, 2];
 
 fn noises(wavelength: f64) -> Vec<(String, Tiled)> {
     let mut list = vec![
-        ("white".into(), White { seed: 1, wavelength }.tiled(PERIOD).unwrap()),
-        ("value".into(), Value { seed: 2, wavelength, ..Default::default() }.tiled(PERIOD).unwrap()),
-        ("perlin".into(), Perlin { seed: 3, wavelength }.tiled(PERIOD).unwrap()),
-        ("classic".into(), Classic { seed: 4, wavelength, ..Default::default() }.tiled(PERIOD).unwrap()),
+        ("white".into(), White::new(1, wavelength).tiled(PERIOD).unwrap()),
+        ("value".into(), Value::new(2, wavelength).tiled(PERIOD).unwrap()),
+        ("perlin".into(), Perlin::new(3, wavelength).tiled(PERIOD).unwrap()),
+        ("classic".into(), Classic::new(4, wavelength).tiled(PERIOD).unwrap()),
     ];
     for &basis in Basis::all().iter().filter(|basis| basis.is_tileable()) {
         for (kind, lacunarity) in
             [(Kind::Fbm, 2.0), (Kind::Ridged, 3.0), (Kind::Weighted { k: 1.0, falloff: Falloff::Reciprocal }, -2.0)]
         {
-            let noise = Fractal { basis, kind, seed: 5, wavelength, octaves: 5, lacunarity, gain: 0.6 };
+            let noise = Fractal::new(5, wavelength).with_basis(basis).with_kind(kind);
+            let noise = noise.with_octaves(5).with_lacunarity(lacunarity).with_gain(0.6);
             list.push((format!("{noise:?}"), noise.tiled(PERIOD).unwrap()));
         }
     }
@@ -64,30 +65,30 @@ fn seams_are_equal_to_the_bit() {
 
 #[test]
 fn an_axis_may_stay_endless_and_no_period_changes_nothing() {
-    let noise = Perlin { seed: 3, wavelength: 8.0 };
+    let noise = Perlin::new(3, 8.0);
     let ring = noise.tiled([4, 0, 0]).unwrap();
     assert_eq!(ring.sample(3.0, 5.0), ring.sample(35.0, 5.0));
     assert_ne!(ring.sample(3.0, 5.0), ring.sample(3.0, 37.0));
-    let fractal = Fractal { wavelength: 9.0, ..Default::default() };
+    let fractal = Fractal::new(0, 9.0);
     assert_eq!(fractal.tiled([0; 3]).unwrap().sample3(1.0, 2.0, 3.0), fractal.sample3(1.0, 2.0, 3.0));
     // Only the integer numbers of cells matter, not how they come about.
-    assert!(Fractal { lacunarity: 1.5, octaves: 3, ..fractal }.tiled([4, 8, 12]).is_ok());
-    assert!(Fractal { wavelength: 0.0, ..fractal }.tiled([4, 8, 12]).is_ok());
+    assert!(fractal.with_lacunarity(1.5).with_octaves(3).tiled([4, 8, 12]).is_ok());
+    assert!(fractal.with_wavelength(0.0).tiled([4, 8, 12]).is_ok());
 }
 
 #[test]
 fn what_cannot_repeat_says_where() {
-    let fractal = Fractal { octaves: 3, ..Default::default() };
-    let error = Fractal { lacunarity: 1.5, ..fractal }.tiled([0, 2, 0]).unwrap_err();
+    let fractal = Fractal::default().with_octaves(3);
+    let error = fractal.with_lacunarity(1.5).tiled([0, 2, 0]).unwrap_err();
     assert_eq!(error, TileError::Octave { octave: 2, axis: 1, cells: 4.5 });
     assert!(error.to_string().starts_with("octave 2 would have to repeat after 4.5 cells along y"));
-    let error = Fractal { octaves: 32, ..fractal }.tiled([4, 0, 0]).unwrap_err();
+    let error = fractal.with_octaves(32).tiled([4, 0, 0]).unwrap_err();
     assert_eq!(error, TileError::Octave { octave: 25, axis: 0, cells: 134_217_728.0 });
-    let error = Fractal { lacunarity: 0.25, ..fractal }.tiled([2; 3]).unwrap_err();
+    let error = fractal.with_lacunarity(0.25).tiled([2; 3]).unwrap_err();
     assert_eq!(error, TileError::Octave { octave: 1, axis: 0, cells: 0.5 });
-    let error = Fractal { basis: Basis::Simplex, ..fractal }.tiled([2, 2]).unwrap_err();
+    let error = fractal.with_basis(Basis::Simplex).tiled([2, 2]).unwrap_err();
     assert_eq!(error, TileError::Slanted);
     // Constant octaves repeat without a change.
-    assert!(Fractal { lacunarity: f64::NAN, ..fractal }.tiled([2; 3]).is_ok());
+    assert!(fractal.with_lacunarity(f64::NAN).tiled([2; 3]).is_ok());
     assert!(Perlin::default().tiled([u32::MAX, 1, 1]).is_err());
 }
