@@ -87,7 +87,8 @@ fn recipes_come_from_standard_input() {
 
 #[test]
 fn single_files_go_to_standard_output() {
-    let folder = Folder::with_small();
+    let folder = Folder::with_solutions();
+    folder.write("small.toml", SMALL);
     for (file, arguments) in [
         ("m.png", &["map", "small.toml", "--size", "200"][..]),
         ("m.svg", &["map", "small.toml", "--size", "200", "--format", "svg"]),

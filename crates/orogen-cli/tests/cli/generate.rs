@@ -89,7 +89,7 @@ fn threads_and_memory_change_nothing() {
 
 #[test]
 fn every_preset_is_made() {
-    let folder = Folder::new();
+    let folder = Folder::with_solutions();
     // Presets with river erosion take longer: tests/suite/golden.rs of the library makes all presets.
     for name in [
         "archipelago",
@@ -110,7 +110,7 @@ fn every_preset_is_made() {
 
 #[test]
 fn without_a_recipe_it_is_the_default_preset_into_out() {
-    let folder = Folder::new();
+    let folder = Folder::with_solutions();
     folder.good(&["generate", "--size", "16"]);
     assert_eq!(folder.names(""), ["out"]);
     folder.good(&["generate", "alpine", "--size", "16", "-o", "same"]);

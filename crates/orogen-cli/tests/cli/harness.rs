@@ -5,6 +5,7 @@ use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, Weak};
 use std::time::{Duration, Instant};
 
 use orogen::io::test_folder::TestFolder;
@@ -51,11 +52,23 @@ pub fn bless() -> bool {
 }
 
 /// A new, empty folder, removed when dropped.
-pub struct Folder(pub TestFolder);
+pub struct Folder(pub TestFolder, Option<Arc<TestFolder>>);
+
+/// The cache of all folders [`with_solutions`](Folder::with_solutions). It exists as long as one of them does.
+static SOLUTIONS: Mutex<Weak<TestFolder>> = Mutex::new(Weak::new());
 
 impl Folder {
     pub fn new() -> Folder {
-        Folder(TestFolder::new("cli-test").unwrap())
+        Folder(TestFolder::new("cli-test").unwrap(), None)
+    }
+
+    /// A folder whose commands find the solutions that commands of other such folders made, for tests of what is done
+    /// with a terrain of slow nodes.
+    pub fn with_solutions() -> Folder {
+        let mut shared = SOLUTIONS.lock().unwrap();
+        let cache = shared.upgrade().unwrap_or_else(|| Arc::new(TestFolder::new("cli-solutions").unwrap()));
+        *shared = Arc::downgrade(&cache);
+        Folder(Folder::new().0, Some(cache))
     }
 
     /// A folder with [`SMALL`] as `small.toml`.
@@ -106,8 +119,8 @@ impl Folder {
     pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_orogen"));
         command.args(arguments).current_dir(&self.0).stdin(Stdio::null()).env_remove("NO_COLOR");
-        // No test may use or leave cached solutions.
-        command.env("OROGEN_CACHE", "");
+        // No test may use or leave solutions in the user's cache.
+        command.env("OROGEN_CACHE", self.1.as_deref().map_or(Path::new(""), |cache| cache));
         command
     }
 

@@ -33,7 +33,7 @@ jobs! {
 fn do_job(title: &str) {
     let Some((_, job)) = PAGE.split_once(&format!("## {title}\n")) else { panic!("{title} is not on the page") };
     let job = job.split("\n## ").next().unwrap_or_default();
-    let folder = Folder::new();
+    let folder = Folder::with_solutions();
     // The last name before a code block is the name of its file.
     let parts: Vec<&str> = job.split("\n```").collect();
     for pair in parts.chunks_exact(2) {

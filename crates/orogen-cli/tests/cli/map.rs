@@ -251,7 +251,7 @@ fn a_range_colors_maps_alike() {
 
 #[test]
 fn names_of_places_are_drawn_and_those_left_out_are_listed() {
-    let folder = Folder::new();
+    let folder = Folder::with_solutions();
     let map = ["map", "hills", "--window", "0,0,101,81", "--cell", "10", "--no-contours", "-o"];
     let with = |more: &[&'static str]| [&map[..], more].concat();
     folder.write("places.csv", "\u{feff}x;y;name\n500;-400;Ford\n-5;-400;Beyond\n700;-200;\n");
@@ -284,7 +284,7 @@ fn names_of_places_are_drawn_and_those_left_out_are_listed() {
 
 #[test]
 fn a_scale_sets_the_size_of_the_page() {
-    let folder = Folder::new();
+    let folder = Folder::with_solutions();
     let map = |more: &[&'static str]| [&["map", "hills", "--window", "0,0,101,81", "--cell", "10"][..], more].concat();
     // 1000 m are 200 mm at 1 : 5000, and 100 mm at 1 : 10 000.
     let width = |scale: &'static str| {
@@ -299,7 +299,7 @@ fn a_scale_sets_the_size_of_the_page() {
 
 #[test]
 fn contours_at_given_heights() {
-    let folder = Folder::new();
+    let folder = Folder::with_solutions();
     let map = |more: &[&'static str]| {
         [&["map", "hills", "--window", "0,0,101,81", "--cell", "150", "--no-summits", "--no-rivers"][..], more].concat()
     };
@@ -327,7 +327,7 @@ fn contours_at_given_heights() {
 
 #[test]
 fn every_contour_with_room_has_a_label() {
-    let folder = Folder::new();
+    let folder = Folder::with_solutions();
     let areas = |labels: &'static str| {
         let map = ["map", "hills", "--window", "0,0,201,161", "--cell", "40", "--contours", "20", "-o", "a.svg", "-q"];
         folder.good(&[&map[..], &["--labels", labels, "--no-summits", "--no-legend", "--force"]].concat());
@@ -339,7 +339,7 @@ fn every_contour_with_room_has_a_label() {
 
 #[test]
 fn a_grid_has_lines_at_round_coordinates() {
-    let folder = Folder::new();
+    let folder = Folder::with_solutions();
     // 4000 m are 160 mm at 1 : 25 000, so that 500 m are 20 mm.
     let map = |more: &[&'static str]| {
         let map =
@@ -362,7 +362,7 @@ fn a_grid_has_lines_at_round_coordinates() {
 
 #[test]
 fn colors_of_the_page_and_its_lines() {
-    let folder = Folder::with_small();
+    let folder = Folder::with_solutions();
     let colors =
         ["--page-color", "#102030", "--ink-color", "ivory", "--water-color", "#00ff80", "--contour-color", "red"];
     let map = |file: &'static str| {
@@ -378,16 +378,12 @@ fn colors_of_the_page_and_its_lines() {
     }
     assert!(!text.contains("#262422"), "the ink of other pages");
     assert!(map("a.pdf").starts_with(b"%PDF-1.4"));
-    folder.bad(
-        &["map", "small.toml", "-o", "b.png", "--page-color", "papyrus"],
-        2,
-        "a color must be #rrggbb or a name",
-    );
+    folder.bad(&["map", "hills", "-o", "b.png", "--page-color", "papyrus"], 2, "a color must be #rrggbb or a name");
 }
 
 #[test]
 fn names_of_summits_rivers_and_lines() {
-    let folder = Folder::new();
+    let folder = Folder::with_solutions();
     let map = |file: &'static str, more: &[&'static str]| {
         let map = ["map", "hills", "--cell", "60", "--no-contours", "--no-legend", "-o", file];
         folder.good(&[&map[..], more].concat()).err

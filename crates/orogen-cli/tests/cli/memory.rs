@@ -409,7 +409,7 @@ fn many_threads_are_no_more_than_there_is_work_for() {
 /// The memory that a refusal names suffices, and one step less does not.
 #[test]
 fn what_a_refusal_names_is_enough() {
-    let folder = Folder::new();
+    let folder = Folder::with_solutions();
     for line in [
         "export alpine --size 1500 -o a.npy",
         "export hills --layer albedo --size 1024 -o a.npy",

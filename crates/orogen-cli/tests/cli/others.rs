@@ -40,7 +40,7 @@ fn the_schema_is_json() {
 
 #[test]
 fn a_new_recipe_is_the_preset_and_never_overwrites() {
-    let folder = Folder::new();
+    let folder = Folder::with_solutions();
     let outcome = folder.good(&["new", "mine", "--preset", "hills"]);
     assert!(outcome.text().contains("orogen generate mine.toml"), "{}", outcome.text());
     folder.good(&["generate", "mine.toml", "--size", "16", "-o", "a"]);
@@ -160,7 +160,7 @@ fn a_simd_level_that_is_not_there_is_refused_and_the_bits_are_the_same_at_all() 
 
 #[test]
 fn analyze_measures_recipes_and_files_of_heights() {
-    let folder = Folder::new();
+    let folder = Folder::with_solutions();
     let window = ["--window", "10,20,128,96"];
     let table = folder.good(&[&["analyze", "hills"], &window[..], &["-o", "page.png"]].concat()).text().to_string();
     for told in ["128 x 96 samples of", "mean slope", "Hack's exponent", "geomorphons  flat", "page.png: the page"] {
@@ -181,7 +181,7 @@ fn analyze_measures_recipes_and_files_of_heights() {
 
 #[test]
 fn fit_writes_a_recipe_that_holds_nothing_of_the_place() {
-    let folder = Folder::new();
+    let folder = Folder::with_solutions();
     folder.good(&["export", "hills", "-o", "place.tif", "--cell", "30", "--window", "100,120,96,80", "-q"]);
     let fit = ["fit", "place.tif", "--tries", "24", "--judges", "1", "--no-cache"];
     let told = folder.good(&[&fit[..], &["-o", "like.toml"]].concat()).text().to_string();

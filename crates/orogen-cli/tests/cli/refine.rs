@@ -36,7 +36,7 @@ const HALVINGS: usize = 3;
 const FINE: usize = 1 << HALVINGS;
 
 fn with_place() -> Folder {
-    let folder = Folder::new();
+    let folder = Folder::with_solutions();
     folder.write("range.toml", RANGE);
     folder.good(&["export", "range.toml", "-o", "place.tif", "-q"]);
     folder

@@ -4,7 +4,7 @@ use crate::harness::Folder;
 
 #[test]
 fn water_goes_into_formats_of_features() {
-    let folder = Folder::new();
+    let folder = Folder::with_solutions();
     let line = |args: &[&'static str]| [&["export", "fjords", "--seed", "3", "--cell", "240"], args].concat();
     let said = |args: &[&'static str]| folder.good(&line(args)).text().to_string();
     let all = "rivers,lakes,watersheds,summits,coast,contours";
@@ -12,7 +12,7 @@ fn water_goes_into_formats_of_features() {
     assert!(told.contains("features of rivers") && told.contains("features of contours"), "{told}");
     let bytes = folder.read("w.gpkg");
     assert!(bytes.starts_with(b"SQLite format 3\0") && &bytes[68..72] == b"GPKG" && bytes.len().is_multiple_of(4096));
-    said(&["-o", "again.gpkg", "--layer", all, "--threads", "1"]);
+    said(&["-o", "again.gpkg", "--layer", all, "--threads", "1", "--no-cache"]);
     assert!(bytes == folder.read("again.gpkg"));
     said(&["-o", "w.fgb", "--layer", "rivers"]);
     assert!(folder.read("w.fgb").starts_with(b"fgb\x03fgb"));
@@ -26,7 +26,7 @@ fn water_goes_into_formats_of_features() {
 
 #[test]
 fn meshes_carry_water() {
-    let folder = Folder::new();
+    let folder = Folder::with_solutions();
     let line = |args: &[&'static str]| [&["export", "fjords", "--seed", "3", "--cell", "240"], args].concat();
     let plain = folder.good(&line(&["-o", "plain.glb"])).text().to_string();
     let wet = folder.good(&line(&["-o", "wet.glb", "--water", "--max-error", "10"])).text().to_string();
