@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use cpu_time::ThreadTime;
+use cpu_time::ProcessTime;
 use orogen::grid::analysis::slope::{extended, slope_degrees};
 use orogen::grid::analysis::{Light, hillshade};
 use orogen::grid::hydrology::{Outlets, accumulate, drainage, fill, steepest::Descent};
@@ -23,6 +23,10 @@ use crate::world::figure::{Figure, Target};
 const SIDE: usize = 2048;
 const WINDOW: usize = 4096;
 const NOISE: usize = 1024;
+
+/// Side of the build by a cluster, and numbers of tasks that do nothing.
+const BUILD: usize = 16384;
+const TASKS: [usize; 2] = [1000, 10_000];
 
 /// Our package, and the environment variable that has the path of a Python which has it. `cargo xtask bench` installs
 /// packages and sets the variables.
@@ -132,8 +136,9 @@ fn figures(options: &Options, folder: &Path) -> Result<Vec<Figure>, String> {
             peers.insert(peer.0, parts);
         }
     }
+    let clusters = clusters(options)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|e| e.to_string())?;
-    let mut figures = Vec::new();
+    let mut figures = clusters;
     for case in CASES.iter().filter(|case| case.name.contains(&options.case)) {
         eprintln!("{} ...", case.name);
         let mut rust = Vec::new();
@@ -158,9 +163,58 @@ fn figures(options: &Options, folder: &Path) -> Result<Vec<Figure>, String> {
     Ok(figures)
 }
 
+/// Builds by workers of a cluster on this machine.
+fn clusters(options: &Options) -> Result<Vec<Figure>, String> {
+    let Some(python) = std::env::var_os(OURS.1).filter(|_| "cluster".contains(&options.case)) else {
+        return Ok(Vec::new());
+    };
+    eprintln!("cluster ...");
+    let [few, many] = TASKS.map(|tasks| tasks.to_string());
+    let arguments = [BUILD.to_string(), few.clone(), many.clone()];
+    let parts = Parts::measure(Path::new(&python), "cluster.py", "cluster", &arguments)?;
+    let part = |name: &str| parts.seconds(&[name]);
+    let case = |what: &str| format!("cluster: {what}");
+    let build = format!("hills, {BUILD} x {BUILD}");
+    let (one, two) = (part("one worker")?, part("two workers")?);
+    let figure = |case: String, ours: f64, unit, other: (&'static str, f64), target| Figure {
+        case,
+        ours,
+        unit,
+        other: Some(other),
+        target,
+    };
+    let scheduler = format!("scheduler and client after {many} tasks");
+    Ok(vec![
+        figure(case(&format!("{build}, two workers")), two, "s", ("one worker", one), Target::FasterBy(1.8)),
+        figure(
+            case(&format!("{build}, one worker")),
+            one,
+            "s",
+            ("one process", part("one process")?),
+            Target::RatioAtMost(1.05),
+        ),
+        figure(case("peak of a worker"), part("worker")?, "MB", ("limit", 536.9), Target::RatioAtMost(1.0)),
+        figure(
+            case(&scheduler),
+            part(&format!("memory, {many}"))?,
+            "MB",
+            ("after a tenth", part(&format!("memory, {few}"))?),
+            Target::RatioAtMost(1.1),
+        ),
+        Figure {
+            case: case("a task that does nothing"),
+            ours: 1e3 * part(&format!("CPU, {many}"))?,
+            unit: "ms of CPU",
+            other: None,
+            target: Target::None,
+        },
+    ])
+}
+
 /// Seconds of CPU of a call in Rust.
 fn seconds(case: &Case, heights: &Grid) -> Result<f64, String> {
-    let start = ThreadTime::now();
+    // A world has threads of its own.
+    let start = ProcessTime::now();
     (case.rust)(std::hint::black_box(heights)).map_err(|e| e.to_string())?;
     Ok(start.elapsed().as_secs_f64())
 }
@@ -168,7 +222,8 @@ fn seconds(case: &Case, heights: &Grid) -> Result<f64, String> {
 fn window(_: &Grid) -> Result<(), orogen::Error> {
     let Some(preset) = presets::find("hills") else { return Ok(()) };
     let world = World::open(preset.recipe()?)?;
-    let cell = world.recipe().world.cell;
+    let Some(size) = world.recipe().world.size else { return Ok(()) };
+    let cell = size[0] / WINDOW as f64;
     world.window("height", &Window::new(WINDOW, WINDOW, cell)).map(drop)
 }
 

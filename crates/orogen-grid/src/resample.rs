@@ -91,10 +91,19 @@ pub fn read(grid: &Grid, kind: LayerKind, at: &Points, out: &mut [f32]) {
                 for (column, x) in columns.iter_mut().zip(part) {
                     *column = split(*x, grid.window().cell);
                 }
+                let columns = &columns[..part.len()];
+                let first = first_sample(part, columns);
                 for (row, y) in out.chunks_mut(xs.len()).zip(ys.iter()) {
                     let (j, v) = split(*y, grid.window().cell);
-                    let row = &mut row[c * COLUMNS..];
-                    for (sample, (x, (i, u))) in row.iter_mut().zip(part.iter().zip(&columns)) {
+                    let row = &mut row[c * COLUMNS..][..part.len()];
+                    if let Some(i) = first
+                        && v == 0.0
+                        && y.is_finite()
+                    {
+                        reader.copy(i, j, row);
+                        continue;
+                    }
+                    for (sample, (x, (i, u))) in row.iter_mut().zip(part.iter().zip(columns)) {
                         *sample = if x.is_finite() && y.is_finite() { reader.cubic(*i, j, *u, v) } else { f32::NAN };
                     }
                 }
@@ -116,6 +125,15 @@ pub fn read(grid: &Grid, kind: LayerKind, at: &Points, out: &mut [f32]) {
             }
         }
     }
+}
+
+/// The first index of columns that are at consecutive samples, so that rows of them can be copied.
+fn first_sample(xs: &[f64], columns: &[(i64, f32)]) -> Option<i64> {
+    let (first, _) = *columns.first()?;
+    let is_next = |(k, (x, (i, u))): (usize, (&f64, &(i64, f32)))| {
+        x.is_finite() && *u == 0.0 && i.checked_sub(first) == Some(k as i64)
+    };
+    xs.iter().zip(columns).enumerate().all(is_next).then_some(first)
 }
 
 /// Index of the nearest sample; halves are rounded up to the next sample.
@@ -150,6 +168,21 @@ impl Reader<'_> {
         let i = i.saturating_sub(self.x).clamp(0, self.width - 1);
         let j = j.saturating_sub(self.y).clamp(0, self.height - 1);
         self.data.get((j * self.width + i) as usize).copied().unwrap_or(f32::NAN)
+    }
+
+    /// Consecutive samples of a row.
+    fn copy(&self, i: i64, j: i64, out: &mut [f32]) {
+        let start = (j.saturating_sub(self.y).clamp(0, self.height - 1) * self.width) as usize;
+        let row = self.data.get(start..start + self.width as usize);
+        let from = usize::try_from(i.saturating_sub(self.x)).ok();
+        match row.zip(from).and_then(|(row, from)| row.get(from..from.checked_add(out.len())?)) {
+            Some(inside) => out.copy_from_slice(inside),
+            None => {
+                for (k, sample) in out.iter_mut().enumerate() {
+                    *sample = self.sample(i.saturating_add(k as i64), j);
+                }
+            }
+        }
     }
 
     fn at(&self, kind: LayerKind, x: f64, y: f64) -> f32 {
@@ -286,6 +319,24 @@ mod tests {
         let wild = Points::Scattered { x: &[f64::NAN, 1e300], y: &[0.0, -1e300] };
         read(&grid, LayerKind::Height, &wild, &mut far);
         assert!(far[0].is_nan() && far[1].is_finite());
+    }
+
+    #[test]
+    fn rows_of_samples_are_copied_also_across_the_border() {
+        let window = Window::new(300, 4, 0.1).at(-7, 2);
+        let data = (0..window.len()).map(|k| (k * k % 977) as f32).collect();
+        let grid = Grid::from_data(window, data).unwrap();
+        for (first, count) in [(-7, 300), (-20, 320), (0, 257), (290, 30), (400, 3), (-60, 5)] {
+            let xs: Vec<f64> = (first..first + count).map(|i| i as f64 * 0.1).collect();
+            let ys: Vec<f64> = (0..9).map(|j| f64::from(j) * 0.1).chain([f64::NAN, 0.55]).collect();
+            let lattice = Points::Lattice { xs: &xs, ys: &ys };
+            let (x, y): (Vec<f64>, Vec<f64>) = (0..lattice.len()).map(|k| lattice.position(k).unwrap()).unzip();
+            let (mut rows, mut points) = (vec![0.0; lattice.len()], vec![0.0; lattice.len()]);
+            read(&grid, LayerKind::Height, &lattice, &mut rows);
+            read(&grid, LayerKind::Height, &Points::Scattered { x: &x, y: &y }, &mut points);
+            let bits = |samples: &[f32]| samples.iter().map(|sample| sample.to_bits()).collect::<Vec<_>>();
+            assert_eq!(bits(&rows), bits(&points), "{first}, {count}");
+        }
     }
 
     #[test]

@@ -42,13 +42,14 @@ pub fn noise<'py>(
     };
     let depths = [depth(&z)?, depth(&w)?];
     let axes = 2 + depths.iter().flatten().count();
+    // Memory of this thread is used again by the next call, unlike that of a thread that ends.
+    let mut value = vec![0.0; points.len()];
+    let mut slopes = vec![vec![0.0; if gradient { points.len() } else { 0 }]; if gradient { axes } else { 0 }];
     let made = run(py, None, |_| {
-        let mut value = vec![0.0; points.len()];
-        let mut slopes = vec![vec![0.0; if gradient { points.len() } else { 0 }]; if gradient { axes } else { 0 }];
         let depths: Vec<Depth> = depths.iter().flatten().map(|depth| depth_of(depth)).collect();
-        Ok(fill(&noise, &points, &depths, &mut value, &mut slopes).map(|()| (value, slopes)))
+        Ok(fill(&noise, &points, &depths, &mut value, &mut slopes))
     })?;
-    let (value, slopes) = made.map_err(|mismatch: LengthMismatch| internal(py, &mismatch.to_string()))?;
+    made.map_err(|mismatch: LengthMismatch| internal(py, &mismatch.to_string()))?;
     let arrays = [value].into_iter().chain(slopes);
     Ok(arrays.map(|values| PyArray1::from_vec(py, values)).collect())
 }

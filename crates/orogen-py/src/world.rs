@@ -411,18 +411,24 @@ impl Points {
 
 /// A recipe with the statistics of heights, as TOML, and the comparison of both, as JSON.
 #[pyfunction]
+#[pyo3(signature = (heights, cell, name, options, threads, memory, progress))]
+#[expect(clippy::too_many_arguments, reason = "the Python part gives them by name")]
 pub fn fit<'py>(
     py: Python<'py>,
     heights: Heights<'py>,
     cell: f64,
     name: &str,
     options: &Bound<'py, PyDict>,
+    threads: Option<usize>,
+    memory: Option<u64>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(String, String)> {
     let job = FitJob::new(&of_keywords(&of_work("fit"), options)?);
     let heights = grid(&heights, cell)?;
+    let limits = orogen::Options { threads, memory: Budget::of(memory), ..orogen::Options::default() };
     run(py, progress, |progress| {
-        let found = job.run(&heights, name, &orogen::Options::default(), progress)?;
+        let _place = limits.memory.reserve(4 * heights.data().len() as u64)?;
+        let found = job.run(&heights, name, &limits, progress)?;
         Ok((found.recipe.to_toml(), found.report.to_json()))
     })
 }

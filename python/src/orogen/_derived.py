@@ -35,5 +35,7 @@ def _layer(
     with listener(progress) as heard:
         channels = world.read([layer], part, dict(options), heard)
     made: F32 = channels[0] if len(channels) == 1 else np.stack(channels)
-    made[..., np.isnan(data)] = np.nan
+    missing = np.isnan(data)
+    if missing.any():
+        made[..., missing] = np.nan
     return made

@@ -202,7 +202,7 @@ class World:
             crs=crs,
             origin=origin,
             threads=threads,
-            memory=_orogen.memory_of(memory) if isinstance(memory, str) else memory,
+            memory=_bytes(memory),
             cache=folder,
         )
         for note in self._native.notes:
@@ -662,19 +662,26 @@ def fit(
     *,
     cell: float,
     nodata: float | None = None,
+    threads: int | None = None,
+    memory: int | str | None = None,
     progress: Progress = None,
     **options: Unpack[FitOptions],
 ) -> tuple[World, dict[str, Any]]:
     """A world with the statistics of real heights, without their data, and its comparison with them.
 
-    `heights` are in metres, of at least 64 x 64 samples with some relief. See `orogen fit`.
+    `heights` are in metres, of at least 64 x 64 samples with some relief; `threads` and `memory` limit the search as
+    they limit a `World`. See `orogen fit`.
     """
     data = _heights(heights, nodata)
     if np.isnan(data).any():
         raise RequestError("`heights` must have no missing samples; fill them, or choose a part without any")
     with listener(progress) as heard:
-        recipe, report = _orogen.fit(data, cell, "heights", dict(options), heard)
+        recipe, report = _orogen.fit(data, cell, "heights", dict(options), threads, _bytes(memory), heard)
     return World(recipe), json.loads(report)
+
+
+def _bytes(memory: int | str | None) -> int | None:
+    return _orogen.memory_of(memory) if isinstance(memory, str) else memory
 
 
 def _restored(arguments: dict[str, Any]) -> World:

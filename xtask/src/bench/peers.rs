@@ -100,8 +100,13 @@ const PEERS: &[Peer] = &[
 const PYTHONS: &[&str] = &["python3", "python3.13", "python3.12", "python3.11"];
 
 /// The Python in which our own package is measured.
-const OURS: Peer =
-    Peer { areas: &["python"], variable: "OROGEN_PYTHON", name: "numpy", packages: &["numpy"], pythons: PYTHONS };
+const OURS: Peer = Peer {
+    areas: &["python"],
+    variable: "OROGEN_PYTHON",
+    name: "distributed",
+    packages: &["numpy", "distributed==2026.8.0"],
+    pythons: PYTHONS,
+};
 
 /// The Pythons of an area's peers that can be installed, each with its variable; a variable that is set is used
 /// unchanged. Peers that cannot be installed are listed on standard error.
@@ -115,7 +120,8 @@ pub fn package() -> Result<(&'static str, PathBuf)> {
     if let Some(python) = std::env::var_os(OURS.variable) {
         return Ok((OURS.variable, python.into()));
     }
-    let python = install(&OURS).ok_or_else(|| Failure::new("the Python package cannot be measured without NumPy"))?;
+    let python =
+        install(&OURS).ok_or_else(|| Failure::new("the Python package cannot be measured without NumPy and Dask"))?;
     shell::run(&mut shell::cargo("build --quiet --release --package orogen-py"))?;
     clients::python::lay_out(&python, &clients::python::site_packages(&python)?)?;
     Ok((OURS.variable, python))

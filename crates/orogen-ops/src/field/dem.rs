@@ -143,6 +143,12 @@ impl Field for Dem {
                 };
                 resample::read(&heights.grid, LayerKind::Height, points, out);
             }
+            if self.shows == DemShows::Height && self.fade == 0.0 {
+                for sample in out.iter_mut() {
+                    *sample = (f64::from(*sample) * self.scale + self.offset) as f32;
+                }
+                return Ok(());
+            }
             let lattice = matches!(points, Points::Lattice { .. });
             for (k, sample) in out.iter_mut().enumerate() {
                 let (x, y) = if lattice { (xs[k % xs.len()], ys[k / xs.len()]) } else { (xs[k], ys[k]) };
@@ -155,8 +161,7 @@ impl Field for Dem {
                     DemShows::Inside => (1.0 - beyond) as f32,
                     DemShows::Height => {
                         let height = f64::from(*sample) * self.scale + self.offset;
-                        let share = if self.fade == 0.0 { 0.0 } else { beyond };
-                        (height + (self.outside - height) * share) as f32
+                        (height + (self.outside - height) * beyond) as f32
                     }
                 };
             }
