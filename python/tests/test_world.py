@@ -252,7 +252,7 @@ def test_statistics_and_fits_and_finer_land(tmp_path: Path) -> None:
         orogen.World("hills").refined(5.0)
     world, report = orogen.fit(land[:128, :128], cell=60.0, tries=12, judges=1)
     assert world.window(size=64).shape == (64, 64) and report["tried"] >= 12
-    with pytest.raises(orogen.errors.MemoryLimitError, match="1 MiB is allowed"):
+    with pytest.raises(orogen.errors.MemoryLimitError, match="1.0 MiB is allowed"):
         orogen.fit(land[:128, :128], cell=60.0, tries=12, judges=1, memory="1MiB")
 
 
