@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """A build by Dask workers on this machine, beside the same build in one process: cluster.py PACKAGE SIDE TASKS...
 
-Prints one line of JSON: seconds of wall time of the builds, the largest memory of a worker in MB, and for each number
-of tasks that do nothing the memory of the scheduler and client in MB, and their seconds of CPU a task.
+Prints one line of JSON: seconds of wall time of the builds, the memory limit of a worker and the largest memory of one
+in MB, and for each number of tasks that do nothing the memory of the scheduler and client in MB, and their seconds of
+CPU a task.
 """
 
 import json
@@ -16,7 +17,7 @@ from distributed import Client, LocalCluster
 from orogen import World, cluster
 
 EXTENT = 15360
-MEMORY = "512MiB"
+MEMORY = 512 << 20
 
 
 def land():
@@ -51,7 +52,7 @@ def nothing(number):
 def main():
     side, tasks = int(sys.argv[2]), [int(count) for count in sys.argv[3:]]
     asked = {"cell": EXTENT / side, "tile": 1024}
-    found = {}
+    found = {"limit": [MEMORY / 1e6]}
     with tempfile.TemporaryDirectory() as folder:
         found["one process"] = [seconds(lambda: land().build(f"{folder}/local.zarr", **asked))]
         for name, count in (("one worker", 1), ("two workers", 2)):
