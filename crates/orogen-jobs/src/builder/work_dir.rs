@@ -77,7 +77,8 @@ impl WorkDir {
         // Links are resolved, so that their targets are replaced and the links stay.
         let real = match fs::canonicalize(out) {
             Ok(real) => real,
-            Err(_) if fs::symlink_metadata(out).is_ok() => {
+            // Another part may have put the result there since.
+            Err(_) if fs::symlink_metadata(out).is_ok_and(|there| there.is_symlink()) => {
                 return refuse("it is a link to something that does not exist");
             }
             Err(_) => out.to_path_buf(),
