@@ -207,9 +207,13 @@ impl WorkDir {
 
     /// Whether the result's path is in use; an empty folder does not count.
     pub fn is_taken(&self) -> bool {
+        if self.file {
+            return fs::is_present(&self.out);
+        }
         match fs::read_dir(&self.out) {
             Ok(mut entries) => entries.next().is_some(),
-            Err(_) => fs::is_present(&self.out),
+            // Not looked at again, because another part may have made the empty folder since.
+            Err(cause) => cause.kind() != io::ErrorKind::NotFound,
         }
     }
 
