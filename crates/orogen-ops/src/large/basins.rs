@@ -231,7 +231,8 @@ impl Share {
             let at = tiling.cell_of(tile, branch.pass.from as usize) * 4 + u64::from(branch.pass.code);
             branch.joins.map(|names| (names, branch.pass.height, at))
         };
-        let joins = basins.branches.iter().filter_map(join).collect();
+        let mut joins: Vec<_> = basins.branches.iter().filter_map(join).collect();
+        joins.shrink_to_fit();
         Share { named: basins.names.iter().flatten().count(), labels, heights, exits, joins }
     }
 }
@@ -315,7 +316,10 @@ impl Map {
 
     /// The passes between tiles.
     fn crossings(tiling: &Tiling, shares: &[Share], bases: &[u32]) -> Vec<Join> {
-        let mut joins = Vec::new();
+        let within = shares.iter().map(|share| share.joins.len()).sum::<usize>();
+        let border_cells = (0..tiling.count()).map(|t| border(&tiling.tile(t)).count()).sum::<usize>();
+        // Two tiles have three passes for each cell along the border between them.
+        let mut joins = Vec::with_capacity(within + border_cells * 3 / 2);
         for (t, share) in shares.iter().enumerate() {
             let tile = tiling.tile(t);
             for index in border(&tile) {

@@ -23,9 +23,10 @@ pub fn side(cells: u64) -> usize {
 #[must_use]
 pub fn memory(cells: u64) -> u64 {
     let side = side(cells) as u64;
-    let tiles = cells.div_ceil(side * side);
-    // Upper bound per border cell: distances over flats, basins, passes and exits.
-    side * side * 100 + tiles * 4 * side * 256
+    let borders = cells.div_ceil(side * side) * 4 * side;
+    // Upper bounds per cell of the tile: distances over flats, basins, passes. Per border cell beside a tile: basins,
+    // their passes, exits, levels. Per border cell while the passes of all tiles are joined to a tree, without a tile.
+    (side * side * 100 + borders * 130).max(borders * 256)
 }
 
 /// A map of heights on disk, and its drainage.

@@ -206,6 +206,15 @@ fn interrupted_builds_go_on_and_other_ones_are_refused() {
         assert_eq!(left, Some(0));
     });
     assert!(objects("again/c.zarr").0 == files(&local));
+    // A file that no build made.
+    let out = "s3://again/d.tif";
+    fs::write(out, b"II*\0").unwrap();
+    let spec = BuildSpec::new(Form::Cog, Window::new(64, 64, 30.0));
+    for spec in [spec.clone(), spec.with_part(1, 2)] {
+        let error = build(&hills, &spec, out, Start::Fresh).unwrap_err().to_string();
+        assert!(error.contains("already exists"), "{error}");
+    }
+    assert_eq!(server().objects("again/d.tif").len(), 1, "nothing is left beside it");
 }
 
 #[test]
