@@ -13,7 +13,7 @@ use orogen::fit::FitJob;
 use orogen::jobs::noise::NoiseJob;
 use orogen::jobs::variants::VariantsJob;
 use orogen::jobs::{AnalyzeJob, BlocksJob, GrowJob, MapJob, RenderJob};
-use orogen::options::{Choice, Condition, OptionSpec, Options, ValueKind};
+use orogen::options::{Choice, Condition, OptionSpec, Options, ValueKind, quoted};
 use orogen::tilemap::TilemapJob;
 
 /// A source of option declarations.
@@ -94,7 +94,12 @@ pub type LayerOptions = OptionsOf<Layers>;
 impl<D: Declares> OptionsOf<D> {
     /// The words of a command line that gives the same options, each after a space.
     pub fn words(&self) -> String {
-        let word = |(name, text): &(&str, String)| format!(" --{name} {text}").trim_end().to_owned();
+        let word = |(name, text): &(&str, String)| match text.as_str() {
+            "" => format!(" --{name}"),
+            // A separate word would be read as another option.
+            text if text.starts_with('-') => format!(" --{name}={}", quoted(text)),
+            text => format!(" --{name} {}", quoted(text)),
+        };
         self.given.iter().map(word).collect()
     }
 

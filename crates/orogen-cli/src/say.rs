@@ -3,7 +3,10 @@
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::io::{self, Write};
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
+
+use orogen::options::quoted;
 
 /// The program and its version, for the metadata of files.
 pub const SOFTWARE: &str = concat!("Orogen ", env!("CARGO_PKG_VERSION"));
@@ -50,6 +53,13 @@ pub fn harmless(text: &str) -> Cow<'_, str> {
         }
     }
     Cow::Owned(out)
+}
+
+/// A path as a word of a command line that the user may copy.
+pub fn word(path: &Path) -> String {
+    let text = path.to_string_lossy();
+    // A word that begins with a dash would be read as an option.
+    quoted(&if text.starts_with('-') && text.len() > 1 { format!("./{text}") } else { text.into_owned() })
 }
 
 /// Whether a character could control a terminal.

@@ -60,7 +60,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         (true, _) => fit.report.to_json(),
         (false, true) => return Ok(()),
         (false, false) => {
-            format!("{0}: {1}\nmake it:  orogen generate {0}\n", args.out.display(), fit.report.words())
+            let (out, word) = (args.out.display(), say::word(&args.out));
+            format!("{out}: {}\nmake it:  orogen generate {word}\n", fit.report.words())
         }
     };
     match sink {

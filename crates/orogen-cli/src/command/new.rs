@@ -33,11 +33,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let output = OutputPolicy::new(Existing::Keep).output(&path)?;
     file::write_whole(&output, |out| out.write_all(preset.text.as_bytes()))?;
-    let path = path.display();
     say::out(&format!(
-        "wrote {path}, a copy of the preset {}\nmake it:             orogen generate {path}\n\
+        "wrote {}, a copy of the preset {}\nmake it:             orogen generate {}\n\
          help in an editor:   orogen schema > orogen.schema.json\n",
-        preset.name
+        path.display(),
+        preset.name,
+        say::word(&path)
     ))
 }
 

@@ -9,11 +9,11 @@ use orogen::io::file::mark;
 
 use crate::declared::FormatOptions;
 use crate::failure::Failure;
-use crate::layer_file;
 use crate::options::{Opened, RunOptions};
 use crate::sink::{Sink, is_stdout};
 use crate::source::Source;
 use crate::view::View;
+use crate::{layer_file, say};
 
 /// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
@@ -74,8 +74,8 @@ fn refine(args: &Args) -> Result<(), Failure> {
 /// Writes the recipe itself.
 fn write_recipe(args: &Args, recipe: &Recipe, sink: &Sink) -> Result<(), Failure> {
     sink.write(|out| out.write_all(mark::marked(&recipe.to_toml()).as_bytes()))?;
-    let name = name(&args.out);
-    sink.tell(args.run.quiet, &format!("wrote {name}; make it: orogen export {name} -o FILE.tif\n"))
+    let (name, word) = (name(&args.out), say::word(&args.out));
+    sink.tell(args.run.quiet, &format!("wrote {name}; make it: orogen export {word} -o FILE.tif\n"))
 }
 
 fn name(path: &Path) -> String {

@@ -6,7 +6,7 @@ use orogen::budget::Reservation;
 use orogen::io::format::png::{Animation, Picture, Pixel};
 use orogen::jobs::RenderJob;
 use orogen::jobs::variants::VariantsJob;
-use orogen::options::Options;
+use orogen::options::{Options, quoted};
 use orogen::output::map::contact::Drawn;
 use orogen::output::map::{Sheet, Variant, contact};
 use orogen::output::render::scene::Colors;
@@ -251,12 +251,13 @@ fn window(world: &World, samples: usize) -> Result<Window, Failure> {
 /// The command line that reproduces the sheet.
 fn words(args: &Args, options: &Options, recipe: &Recipe) -> String {
     let what = match &args.sweep {
-        Some(Sweep { name, text, .. }) => format!(" --sweep {name}={text}"),
+        Some(Sweep { name, text, .. }) => format!(" --sweep {}", quoted(&format!("{name}={text}"))),
         // Other recipes with this name may have another seed.
         None if options.has("seed") => String::new(),
         None => format!(" --seed {}", recipe.world.seed),
     };
-    let set: String = args.arguments.values().iter().map(|(name, value)| format!(" --set {name}={value}")).collect();
-    let (version, name, given) = (env!("CARGO_PKG_VERSION"), args.recipe.display(), args.options.words());
+    let set = |(name, value): &(String, f64)| format!(" --set {name}={value}");
+    let set: String = args.arguments.values().iter().map(set).collect();
+    let (version, name, given) = (env!("CARGO_PKG_VERSION"), say::word(&args.recipe), args.options.words());
     format!("Orogen {version}: orogen variants {name}{what}{set}{given}")
 }

@@ -5,8 +5,10 @@ mod given;
 mod palette;
 mod spec;
 mod value;
+mod word;
 
 pub use given::Options;
 pub use palette::find_palette;
 pub(crate) use spec::by_name;
 pub use spec::{Choice, Component, Condition, OptionSpec, ValueKind};
+pub use word::quoted;

@@ -2,6 +2,8 @@
 
 use std::fmt::{self, Display};
 
+use orogen::options::quoted;
+
 /// The words of a command line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CommandLine {
@@ -49,15 +51,6 @@ impl Display for CommandLine {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let words: Vec<String> = self.words.iter().map(|word| quoted(word)).collect();
         out.write_str(&words.join(" "))
-    }
-}
-
-/// A word of a command line, quoted if a shell would not read it literally.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "_-./,:=@+%".contains(c);
-    match !word.is_empty() && word.chars().all(is_plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', "'\\''")),
     }
 }
 
