@@ -74,7 +74,9 @@ screen, server = display()
 environment = {**os.environ, "DISPLAY": screen, "XDG_CONFIG_HOME": str(WORK / "loss"), "XDG_RUNTIME_DIR": str(WORK)}
 environment.pop("WAYLAND_DISPLAY", None)
 text = "orogen = 1\n\n[world]\ncell = 10\nsize = 2000\n\n[nodes.land]\nop = \"fbm\"\n\n[outputs]\nheight = \"land\"\n"
-(settings / "studio-unsaved.toml").write_text("# unsaved: precious\n" + text)
+kept = settings / "unsaved" / "1.toml"
+kept.parent.mkdir(exist_ok=True)
+kept.write_text('# unsaved: {"title": "precious", "path": null, "folder": null}\n' + text)
 studio = subprocess.Popen(
     [STUDIO, "classic", "--lose-device", "3"], env=environment, stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
 )
@@ -87,8 +89,61 @@ try:
     checks.that("a lost device: the studio starts again", b"--after-loss" in again and studio.poll() is None)
     time.sleep(4)
     checks.that("a lost device: the studio stays open", studio.poll() is None)
-    checks.that("a lost device: the text is kept", text in (settings / "studio-unsaved.toml").read_text())
+    checks.that("a lost device: the text is kept", text in kept.read_text())
 finally:
+    for process in studio, server:
+        process.terminate()
+        process.wait(20)
+
+# The clipboard is that of the system, in both directions.
+folder = WORK / "clipboard"
+(folder / "orogen").mkdir(parents=True, exist_ok=True)
+(folder / "orogen" / "studio.json").write_text(f'{{"language": "en", "window": [{SIZE[0]}, {SIZE[1]}]}}')
+recipe = folder / "land.toml"
+recipe.write_text(text)
+screen, server = display()
+environment = {**os.environ, "DISPLAY": screen, "XDG_CONFIG_HOME": str(folder), "XDG_RUNTIME_DIR": str(WORK)}
+environment.pop("WAYLAND_DISPLAY", None)
+studio = subprocess.Popen([STUDIO, recipe], env=environment, stdin=subprocess.DEVNULL)
+
+
+def keys(*words):
+    subprocess.run(["xdotool", *words], env=environment, check=True)
+    time.sleep(0.5)
+
+
+def until(holds, seconds=60):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end and not holds():
+        time.sleep(0.5)
+    return holds()
+
+
+def clipboard():
+    found = subprocess.run(
+        ["xclip", "-out", "-selection", "clipboard"], env=environment, capture_output=True, text=True, timeout=20,
+    )
+    return found.stdout
+
+
+try:
+    found = ["xdotool", "search", "--onlyvisible", "--name", "Orogen"]
+    until(lambda: subprocess.run(found, env=environment, capture_output=True).returncode == 0, 300)
+    window = subprocess.run(found, env=environment, capture_output=True, text=True).stdout.split()[0]
+    time.sleep(3)
+    keys("windowfocus", window)
+    # The text of the recipe is at the bottom.
+    keys("mousemove", "--window", window, "640", "200", "key", "ctrl+4")
+    keys("mousemove", "--window", window, "400", "640", "click", "1")
+    keys("key", "ctrl+a", "key", "ctrl+c")
+    checks.that("a copied text reaches other programs", until(lambda: clipboard() == text))
+    other = text.replace("cell = 10", "cell = 20")
+    subprocess.run(["xclip", "-in", "-selection", "clipboard"], env=environment, input=other, text=True, check=True)
+    keys("key", "ctrl+a", "key", "ctrl+v")
+    keys("key", "ctrl+s")
+    checks.that("a text of another program is pasted", until(lambda: recipe.read_text() == other))
+finally:
+    ImageGrab.grab(xdisplay=screen).save(WORK / "clipboard.png")
     for process in studio, server:
         process.terminate()
         process.wait(20)

@@ -160,6 +160,8 @@ const CLIENTS: &[Client] = &[
             ("/usr/share/doc/libxkbcommon-x11-0/copyright", "libxkbcommon-x11-0"),
             ("/usr/share/fonts/truetype/wqy/wqy-microhei.ttc", "fonts-wqy-microhei"),
             ("Xvfb", "xvfb"),
+            ("xdotool", "xdotool"),
+            ("xclip", "xclip"),
         ],
         pip: &[NUMPY, PILLOW],
         npm: &[],

@@ -25,10 +25,67 @@ pub fn read(path: &Path) -> Result<String> {
 /// # Errors
 /// If it cannot be written.
 pub fn write(path: &Path, text: &str) -> Result<()> {
+    write_bytes(path, text.as_bytes())
+}
+
+/// Writes bytes atomically.
+///
+/// # Errors
+/// If they cannot be written.
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<()> {
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder).map_err(|cause| Error::file("create the folder", folder, &cause))?;
+        make_folder(folder)?;
     }
-    orogen::io::file::replace_whole(path, |out| out.write_all(text.as_bytes()))
+    orogen::io::file::replace_whole(path, |out| out.write_all(bytes))
+}
+
+/// Reads a small file; `None` if it cannot be read.
+#[must_use]
+pub fn read_bytes(path: &Path) -> Option<Vec<u8>> {
+    open::bytes(path, "read", LONGEST_TEXT).ok()?
+}
+
+/// Creates a folder and those around it, unless it exists.
+///
+/// # Errors
+/// If it cannot be created.
+pub fn make_folder(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).map_err(|cause| Error::file("create the folder", folder, &cause))
+}
+
+/// A locked file. The lock ends when this is dropped, or the process ends.
+#[derive(Debug)]
+pub struct Lock {
+    _file: std::fs::File,
+}
+
+/// Locks a file, which is created if necessary; `None` if another process or window has the lock, or it cannot be
+/// opened.
+#[must_use]
+pub fn lock(path: &Path) -> Option<Lock> {
+    let file = std::fs::OpenOptions::new().create(true).truncate(false).read(true).write(true).open(path).ok()?;
+    file.try_lock().ok().map(|()| Lock { _file: file })
+}
+
+/// What a question about an existing file or folder says.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct About {
+    /// Its length in bytes; of a folder, the number of its entries.
+    pub size: u64,
+    /// Whether it is a folder.
+    pub is_folder: bool,
+    /// The time of its last change.
+    pub changed: Option<SystemTime>,
+}
+
+/// Facts about a file, or about a folder with entries; `None` if there is none.
+#[must_use]
+pub fn about(path: &Path) -> Option<About> {
+    let metadata = std::fs::metadata(path).ok()?;
+    let entries = if metadata.is_dir() { std::fs::read_dir(path).ok()?.count() as u64 } else { 0 };
+    let is_folder = metadata.is_dir();
+    let size = if is_folder { entries } else { metadata.len() };
+    (!is_folder || entries > 0).then(|| About { size, is_folder, changed: metadata.modified().ok() })
 }
 
 /// The time of the last change of a file; `None` if it does not exist.

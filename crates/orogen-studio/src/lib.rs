@@ -7,6 +7,7 @@
 pub mod catalogue;
 pub mod editing;
 pub mod export;
+pub mod file_watch;
 pub mod files;
 pub mod preview;
 pub mod recovery;

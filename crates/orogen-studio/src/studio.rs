@@ -1,5 +1,6 @@
 //! The state of the studio without its window: the document, its view, and the pictures.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -126,6 +127,32 @@ impl Studio {
             _ => {}
         }
         Ok(())
+    }
+
+    /// Goes back by one step of the history; false if there is none.
+    pub fn undo(&mut self) -> bool {
+        let went = self.document.undo();
+        self.keep_selection();
+        went
+    }
+
+    /// Goes forward by one step of the history; false if there is none.
+    pub fn redo(&mut self) -> bool {
+        let went = self.document.redo();
+        self.keep_selection();
+        went
+    }
+
+    /// Sets the text of the recipe, as typed.
+    pub fn type_text(&mut self, text: String) {
+        self.document.type_text(text);
+        self.keep_selection();
+    }
+
+    /// Deselects nodes that no longer exist: a new node would read them, and one of the same name would read itself.
+    fn keep_selection(&mut self) {
+        let names: HashSet<&str> = self.document.recipe().nodes().iter().map(|named| named.name.as_str()).collect();
+        self.selected.retain(|name| names.contains(name.as_str()));
     }
 
     /// Requests pictures if the recipe or the look has changed since the last time.
@@ -267,6 +294,7 @@ impl Studio {
         let is_new = text != self.document.text();
         if is_new {
             self.document.reload(text);
+            self.keep_selection();
         }
         is_new
     }

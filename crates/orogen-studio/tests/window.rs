@@ -4,6 +4,10 @@
 
 #[path = "window/export.rs"]
 mod export;
+#[path = "window/manners.rs"]
+mod manners;
+#[path = "window/unsaved.rs"]
+mod unsaved;
 #[path = "window/views.rs"]
 mod views;
 

@@ -106,10 +106,22 @@ impl Document {
         Ok(document)
     }
 
-    /// A text that was not saved: it has no file yet, and counts as changed.
+    /// A text that was not saved: it has no file, and counts as changed. Relative paths start in `folder`.
     #[must_use]
-    pub fn recovered(name: &Path, text: String) -> Document {
-        Document { path: None, saved: Some(String::new()), ..Document::of_file(name, text) }
+    pub fn unsaved(title: &str, text: String, folder: Option<&Path>) -> Document {
+        let mut document = Document::of_file(Path::new("unsaved.toml"), text);
+        document.title = title.to_owned();
+        (document.path, document.folder) = (None, folder.map(Path::to_path_buf));
+        document.saved = Some(String::new());
+        document.read();
+        document
+    }
+
+    /// The document with a text that was not saved, as one step after the text of the file.
+    #[must_use]
+    pub fn with_unsaved(mut self, text: String) -> Document {
+        self.set(text, "edit.recovered", None);
+        self
     }
 
     /// The title.
@@ -122,6 +134,12 @@ impl Document {
     #[must_use]
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
+    }
+
+    /// The folder that relative paths start in, if the document has no file.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
     }
 
     /// The argument for command lines that refers to the document; `None` if its text is in no file.

@@ -12,9 +12,13 @@ pub const OPS: [&str; 2] = ["path", "polygon"];
 /// Converts points to a value of a recipe.
 #[must_use]
 pub fn value(points: &[[f64; 2]]) -> Value {
-    let pair =
-        |point: &[f64; 2]| Value::List(point.iter().map(|part| Spanned::unplaced(Value::Number(*part))).collect());
-    Value::List(points.iter().map(|point| Spanned::unplaced(pair(point))).collect())
+    Value::List(points.iter().map(|point| Spanned::unplaced(numbers(point))).collect())
+}
+
+/// Converts numbers to a value of a recipe.
+#[must_use]
+pub fn numbers(numbers: &[f64]) -> Value {
+    Value::List(numbers.iter().map(|number| Spanned::unplaced(Value::Number(*number))).collect())
 }
 
 /// The points of a node with a single line or area in the plane; `None` for other nodes, several lines, and points with

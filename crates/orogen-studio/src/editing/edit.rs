@@ -35,8 +35,9 @@ pub enum Edit {
     Output { name: String, source: Input },
     /// Sets the colors of a surface or a terrain class, by its index.
     Colors { ground: Ground, index: usize, colors: Vec<Rgb> },
-    /// Adds a node with some inputs and parameters. Required inputs that are not in `inputs` are 0.
-    Add { name: String, op: String, inputs: Vec<(String, String)>, params: Vec<(String, Value)> },
+    /// Adds a node with some inputs and parameters. Required inputs that are not in `inputs` are 0. `outputs` then read
+    /// the node.
+    Add { name: String, op: String, inputs: Vec<(String, String)>, params: Vec<(String, Value)>, outputs: Vec<String> },
     /// Writes stroke number `at`, from 0, of a paint node: a new stroke, or a longer form of the last one. A node that
     /// does not exist is created at `placement`.
     Stroke { node: String, placement: Placement, at: usize, stroke: Stroke },
@@ -179,12 +180,16 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
             }
         }
         Edit::Colors { ground, index, colors } => set_colors(&mut document, *ground, *index, colors)?,
-        Edit::Add { name, op, inputs, params } => {
+        Edit::Add { name, op, inputs, params, outputs: ends } => {
             add(&mut document, name, op, inputs)?;
             let own = node(&mut document, name).ok_or_else(|| missing(&format!("node `{name}`")))?;
             for (key, value) in params {
                 let value = value_of(value).ok_or_else(|| format!("`{key}` cannot be {}", value.describe()))?;
                 set(own, key, value);
+            }
+            if !ends.is_empty() {
+                let outputs = top(&mut document, "outputs").ok_or_else(|| missing("[outputs]"))?;
+                ends.iter().for_each(|output| set(outputs, output, name.as_str().into()));
             }
         }
         Edit::Stroke { node: name, placement, at, stroke } => {

@@ -1,5 +1,6 @@
 //! The edited recipe: its text, the parsed recipe, edits that keep comments, and undo.
 
+pub mod adding;
 pub mod brush;
 pub mod document;
 pub mod drawing;

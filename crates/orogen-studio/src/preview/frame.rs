@@ -77,6 +77,15 @@ impl Frame {
         (self.request, self.window().width, self.seconds.to_bits())
     }
 
+    /// The lowest and the highest height in metres.
+    #[must_use]
+    pub fn range(&self) -> [f64; 2] {
+        let finite = self.heights.data().iter().copied().filter(|height| height.is_finite());
+        finite
+            .fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], height| [low.min(height), high.max(height)])
+            .map(f64::from)
+    }
+
     /// The window.
     #[must_use]
     pub fn window(&self) -> &Window {

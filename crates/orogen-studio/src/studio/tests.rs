@@ -1,7 +1,7 @@
 //! Random edits, as made by a person in a hurry.
 
 use super::*;
-use crate::editing::names;
+use crate::editing::{adding, names};
 use orogen::declare::Input;
 use orogen::node::Node;
 use orogen::value::Value;
@@ -30,12 +30,12 @@ impl Random {
     }
 }
 
-/// A random edit of a recipe.
-fn edit(recipe: &Recipe, random: &mut Random) -> Option<Edit> {
+/// A random edit of a recipe with selected nodes.
+fn edit(recipe: &Recipe, selected: &[String], random: &mut Random) -> Option<Edit> {
     let names: Vec<String> = recipe.nodes().iter().map(|named| named.name.clone()).collect();
     let name = random.of(&names)?.clone();
     let node = &recipe.nodes().iter().find(|named| named.name == name)?.node;
-    Some(match random.below(9) {
+    Some(match random.below(12) {
         0 => Edit::Seed(random.next() >> 1),
         1 => Edit::World("sea_level", random.below(500) as f64 - 250.0),
         2 | 3 => {
@@ -62,12 +62,15 @@ fn edit(recipe: &Recipe, random: &mut Random) -> Option<Edit> {
                 .collect();
             let op = *random.of(&ops)?;
             let taken = names.iter().map(String::as_str).collect();
-            let first = Node::named(op)?.spec().inputs.first().map(|input| (input.name.to_owned(), name));
-            let inputs = first.into_iter().collect();
-            Edit::Add { name: names::free(&names::of_op(op), &taken), op: op.into(), inputs, params: Vec::new() }
+            let range = (random.below(2) == 0).then(|| [-50.0, random.below(2000) as f64]);
+            let name = names::free(&names::of_op(op), &taken);
+            adding::edit(recipe, name, op, selected.first().map(String::as_str), range)
         }
-        6 => Edit::Delete(vec![name]),
-        7 => Edit::Duplicate(vec![name]),
+        6 => Edit::Delete(selected.to_vec()),
+        7 => Edit::Duplicate(selected.to_vec()),
+        8 => Edit::Group { nodes: selected.to_vec(), name: groups::free(recipe, "", "group") },
+        9 => Edit::Ungroup(groups::of_selection(recipe, selected)?),
+        10 => Edit::Output { name: HEIGHT.into(), source: Input::Node(name) },
         _ => Edit::Rename { to: format!("n{}", random.below(1000)), from: name },
     })
 }
@@ -93,33 +96,44 @@ fn edit_while(goes_on: impl Fn(usize) -> bool, seed: u64) -> usize {
         steps += 1;
         match random.below(20) {
             0 => studio.open(document(random.of(&["classic", "island", "mesa", "fjords"]).unwrap())),
-            1 | 2 => drop(studio.document.undo()),
+            1 | 2 => drop(studio.undo()),
             3 => {
-                studio.document.redo();
+                studio.redo();
                 // Typed and undone text may come back.
                 if !studio.document.is_valid() {
-                    assert!(studio.document.undo());
+                    assert!(studio.undo());
                 }
             }
             4 => {
                 let mut text = studio.document.text().to_owned();
                 let at = text.char_indices().nth(random.below(text.chars().count())).map_or(0, |(at, _)| at);
                 text.insert_str(at, ["x", "\"", "[", "=", "\n"][random.below(5)]);
-                studio.document.type_text(text);
-                assert!(studio.document.undo());
+                studio.type_text(text);
+                assert!(studio.undo());
+            }
+            6..9 => {
+                let nodes = studio.document.recipe().nodes();
+                let some = (0..random.below(4)).filter_map(|_| random.of(nodes)).map(|named| named.name.clone());
+                studio.selected = some.collect::<HashSet<String>>().into_iter().collect();
             }
             5 => studio.look.layer = random.of(&studio.layers()).unwrap().clone(),
             _ => {
-                if let Some(edit) = edit(studio.document.recipe(), &mut random) {
+                if let Some(edit) = edit(studio.document.recipe(), &studio.selected, &mut random) {
                     let before = studio.document.text().to_owned();
-                    if studio.edit(&edit).is_err() {
+                    if let Err(error) = studio.edit(&edit) {
                         assert_eq!(studio.document.text(), before, "{edit:?}");
+                        let (message, uses_selection) =
+                            (error.to_string(), !matches!(edit, Edit::Connect { .. } | Edit::Output { .. }));
+                        assert!(!(uses_selection && message.contains("reads itself")), "{edit:?}: {message}");
+                        assert!(!message.contains("unknown node"), "{edit:?}: {message}");
                     }
                     edits += 1;
                 }
             }
         }
         assert!(studio.document.is_valid(), "{:?}", studio.document.diagnostics());
+        let has = |name: &String| studio.document.recipe().nodes().iter().any(|named| named.name == *name);
+        assert!(studio.selected.iter().all(has), "{:?}", studio.selected);
         studio.look.finest = 256;
         studio.refresh();
         studio.poll();
@@ -145,7 +159,7 @@ fn json_is_edited_as_toml() {
 
 #[test]
 fn random_edits_do_no_harm() {
-    assert!(edit_while(|steps| steps < 200, 1) > 100);
+    assert!(edit_while(|steps| steps < 300, 1) > 100);
 }
 
 /// The memory that this process uses, in bytes, once all cancelled work has ended.
@@ -206,6 +220,27 @@ fn half_an_hour_of_random_edits_leaks_nothing() {
     let (after, most) = (resident(), status("VmHWM:"));
     println!("at most {} KiB", most >> 10);
     assert!(after < before + most / 20, "{} KiB, then {} KiB; at most {}", before >> 10, after >> 10, most >> 10);
+}
+
+#[test]
+fn a_node_that_is_added_undone_and_added_again_does_not_read_itself() {
+    let session = Session::new(Options { memory: Budget::of(512 << 20), ..Options::default() }).unwrap();
+    let document = Document::of_preset(presets::find("classic").unwrap()).unwrap();
+    let mut studio = Studio::new(session, Arc::new(|| ()), document);
+    studio.selected = vec!["terrain".into()];
+    for _ in 0..3 {
+        let selected = studio.selected.first().cloned();
+        let recipe = studio.document.recipe();
+        let edit = adding::edit(recipe, "step".into(), "terrace", selected.as_deref(), Some([-3.0, 1870.0]));
+        studio.edit(&edit).unwrap();
+        assert_eq!(studio.selected, ["step"]);
+        assert!(studio.undo());
+        assert!(studio.selected.is_empty());
+    }
+    assert!(studio.redo());
+    studio.selected = vec!["step".into()];
+    studio.type_text(studio.document.text().replace("nodes.step", "nodes.stairs"));
+    assert!(studio.document.is_valid() && studio.selected.is_empty());
 }
 
 #[test]

@@ -48,6 +48,8 @@ pub enum Kind {
     Group,
     /// A node outside of the shown group.
     Outside,
+    /// An output of the recipe.
+    Output,
 }
 
 /// The end of a wire at a box.
@@ -135,7 +137,7 @@ impl Scene {
                         let label = format!("{}.{key}", scene.boxes[to].inside(&reader.name));
                         scene.boxes[to].port(label, &reader.name, key)
                     }
-                    Kind::Outside => scene.boxes[to].port(key.to_owned(), &reader.name, key),
+                    Kind::Outside | Kind::Output => scene.boxes[to].port(key.to_owned(), &reader.name, key),
                 };
                 scene.wires.push(Wire { from, outlet, to, end });
             }
@@ -149,7 +151,26 @@ impl Scene {
                 }
             }
         }
+        if group.is_empty() {
+            scene.add_outputs(recipe, &at);
+        }
         scene
+    }
+
+    /// Adds a box for each output.
+    fn add_outputs(&mut self, recipe: &Recipe, at: &HashMap<String, usize>) {
+        for (name, input) in recipe.output_inputs() {
+            let mut block = GraphBox::output(name);
+            let end = block.port(String::new(), &block.id.clone(), name);
+            self.boxes.push(block);
+            let to = self.boxes.len() - 1;
+            if let Some(source) = source_of(input)
+                && let Some(from) = at.get(&id_of(source, "")).copied()
+            {
+                let outlet = self.boxes[from].outlet(source);
+                self.wires.push(Wire { from, outlet, to, end });
+            }
+        }
     }
 
     /// The box at an end of a wire; it is created if it is outside the group.
@@ -221,6 +242,11 @@ impl GraphBox {
         }
     }
 
+    fn output(name: &str) -> GraphBox {
+        // No node has a name with this character.
+        GraphBox { kind: Kind::Output, ..GraphBox::group(&format!("={name}"), name) }
+    }
+
     /// The full name of its group; `None` for other boxes.
     #[must_use]
     pub fn group_name(&self) -> Option<&str> {
@@ -270,7 +296,7 @@ mod tests {
     #[test]
     fn a_group_is_one_box_with_what_goes_in_and_out() {
         let scene = scene("");
-        assert_eq!(ids(&scene), ["hills", "g/", "soft"]);
+        assert_eq!(ids(&scene), ["hills", "g/", "soft", "=height"]);
         let group = &scene.boxes[1];
         assert_eq!((group.kind, group.title.as_str(), group.group_name()), (Kind::Group, "g", Some("g")));
         assert_eq!(group.nodes, ["g/rough", "g/h/land"]);
@@ -283,9 +309,11 @@ mod tests {
                 ("hills", "g/", End::Port(0)),
                 ("hills", "g/", End::Port(1)),
                 ("g/", "soft", End::Port(0)),
-                ("g/", "soft", End::Mask)
+                ("g/", "soft", End::Mask),
+                ("soft", "=height", End::Port(0)),
             ]
         );
+        assert_eq!((scene.boxes[3].kind, scene.boxes[3].title.as_str()), (Kind::Output, "height"));
         assert_eq!(scene.box_of("g/h/land").unwrap().id, "g/");
     }
 

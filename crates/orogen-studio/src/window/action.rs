@@ -9,6 +9,7 @@ use crate::editing::brush::Effect;
 use crate::editing::edit::Edit;
 use crate::preview::coloring::Coloring;
 use crate::preview::region::Region;
+use crate::recovery::Unsaved;
 use crate::settings::Theme;
 
 /// An action of the user.
@@ -48,6 +49,10 @@ pub enum Action {
     OpenPreset(&'static str),
     /// Opens a file.
     Open(PathBuf),
+    /// Opens a text that was not saved.
+    OpenUnsaved(Unsaved),
+    /// Removes a text that was not saved.
+    DropUnsaved(Unsaved),
     /// Saves the document to a file.
     Save(PathBuf),
     /// Sets the language of the interface.

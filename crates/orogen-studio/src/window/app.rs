@@ -3,29 +3,32 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use eframe::egui::{self, Context, Panel, Ui};
+use eframe::egui::{self, Context, Key, KeyboardShortcut, Panel, Ui};
 use orogen::gpu::Gpu;
 use orogen::{Budget, Options, Result, Session};
 
 use super::action::Action;
 use super::command::{self, Command};
 use super::device::DeviceWatch;
-use super::dialogs::{self, CommandPalette, FileDialog, Unsaved};
+use super::dialogs::{self, CommandPalette, Decision, FileDialog};
 use super::export_dialog::ExportDialog;
 use super::open_dialogs::OpenDialogs;
 use super::panels::{Below, Panels, Shown, View};
 use super::purpose::Purpose;
 use super::ramp_editor::RampEditor;
+use super::recovery_dialog::{self, RecoveryDialog};
 use super::relief::Ability;
+use super::relief_panel::ShownView;
 use super::{fonts, menu, theme};
 use crate::catalogue::Language;
 use crate::editing::document::Document;
 use crate::editing::edit::Edit;
 use crate::editing::groups;
+use crate::file_watch::FileWatch;
 use crate::preview::coloring::Coloring;
 use crate::preview::colors::palette;
 use crate::preview::worker::Wake;
-use crate::recovery::Recovery;
+use crate::recovery::{Recovery, Unsaved};
 use crate::settings::Settings;
 use crate::studio::{self, Studio};
 
@@ -34,6 +37,7 @@ use crate::studio::{self, Studio};
 enum Pending {
     Open(PathBuf),
     Preset(&'static str),
+    Unsaved(Unsaved),
     StartPage,
     Quit,
 }
@@ -56,11 +60,12 @@ pub struct App {
     panels: Panels,
     dialogs: OpenDialogs,
     pending: Option<Pending>,
+    /// The action that follows once the document is saved under a name that is being chosen.
+    after_save: Option<Pending>,
     recovery: Recovery,
-    /// The text that a crash left behind.
-    recovered: Option<(String, String)>,
-    /// The time of the last check of the document's file.
-    watched: f64,
+    file_watch: FileWatch,
+    /// The title of the window.
+    title: String,
     may_close: bool,
     /// Whether unsaved changes are kept for the next start.
     keeps_recovered: bool,
@@ -85,9 +90,6 @@ pub struct Start {
     pub lose_device: Option<f64>,
 }
 
-/// Seconds between two checks of the document's file.
-const WATCH: f64 = 0.5;
-
 impl App {
     /// Creates the application with a document, or with the start page.
     ///
@@ -109,8 +111,10 @@ impl App {
         if let Some(state) = &context.wgpu_render_state {
             watch.start(state);
         }
-        let (recovery, recovered) = Recovery::new(folder.as_deref());
+        let recovery = Recovery::new(folder.as_deref());
+        let left = recovery.left();
         let panels = Panels::new(&wake);
+        let file_watch = FileWatch::new(Arc::clone(&wake))?;
         let mut app = App {
             session,
             gpu,
@@ -123,11 +127,12 @@ impl App {
             lose_device,
             studio: None,
             panels,
-            dialogs: OpenDialogs::default(),
+            dialogs: OpenDialogs { recovery: Some(RecoveryDialog::new(left)), ..OpenDialogs::default() },
             pending: None,
+            after_save: None,
             recovery,
-            recovered,
-            watched: 0.0,
+            file_watch,
+            title: String::new(),
             may_close: false,
             keeps_recovered: false,
         };
@@ -137,7 +142,10 @@ impl App {
         }
         if is_after_loss {
             app.dialogs.message = Some((app.text("device.title").into(), app.text("device.lost").into()));
-            app.open_recovered();
+            let latest = app.dialogs.recovery.as_ref().and_then(|dialog| dialog.latest().cloned());
+            if let Some(unsaved) = latest {
+                app.open_unsaved(&unsaved);
+            }
         }
         Ok(app)
     }
@@ -146,6 +154,18 @@ impl App {
     #[must_use]
     pub fn studio(&self) -> Option<&Studio> {
         self.studio.as_ref()
+    }
+
+    /// Whether the window is about to close.
+    #[must_use]
+    pub fn is_closing(&self) -> bool {
+        self.may_close
+    }
+
+    /// The settings of the 3D view; `None` on the start page.
+    #[must_use]
+    pub fn shown_view(&self) -> Option<ShownView> {
+        self.studio.as_ref().map(|studio| self.panels.relief.shown(studio))
     }
 
     /// The export dialog, while it is open.
@@ -191,9 +211,10 @@ impl App {
         self.note_document();
     }
 
-    /// Records which document is open, in case the graphics device is lost.
+    /// Records which document is open, in case the graphics device is lost, and watches its file.
     fn note_document(&self) {
         let document = self.studio.as_ref().map(|studio| &studio.document);
+        self.file_watch.watch(document.and_then(Document::path));
         self.watch.set_document(document.map(|document| match document.path() {
             Some(path) => path.to_path_buf(),
             None => PathBuf::from(document.title()),
@@ -234,6 +255,7 @@ impl App {
                     self.open_made(Document::of_preset(preset));
                 }
             }
+            Pending::Unsaved(unsaved) => self.open_unsaved(&unsaved),
             Pending::StartPage => {
                 self.studio = None;
                 self.note_document();
@@ -251,7 +273,18 @@ impl App {
             Action::Command(command) => self.command(command, context),
             Action::OpenPreset(name) => self.leave(Pending::Preset(name), context),
             Action::Open(path) => self.leave(Pending::Open(path), context),
-            Action::Save(path) => self.save(&path),
+            Action::OpenUnsaved(unsaved) => self.leave(Pending::Unsaved(unsaved), context),
+            Action::DropUnsaved(unsaved) => {
+                self.recovery.discard(&unsaved);
+                self.no_longer_offer(&unsaved);
+            }
+            Action::Save(path) => {
+                if self.save(&path)
+                    && let Some(pending) = self.after_save.take()
+                {
+                    self.go(pending, context);
+                }
+            }
             Action::Language(language) => {
                 self.language = language;
                 self.settings.language = Some(language);
@@ -297,7 +330,7 @@ impl App {
                         let edited = studio.edit(&edit);
                         self.say_failure(edited);
                     }
-                    Action::Type(text) => studio.document.type_text(text),
+                    Action::Type(text) => studio.type_text(text),
                     Action::EndGesture => studio.document.end_gesture(),
                     Action::Select(names) => studio.selected = names,
                     Action::Show(layer) => studio.look.layer = layer,
@@ -332,16 +365,21 @@ impl App {
         }
     }
 
-    fn save(&mut self, path: &Path) {
-        let Some(studio) = &mut self.studio else { return };
+    /// Saves the document to a file. Returns whether it was saved.
+    fn save(&mut self, path: &Path) -> bool {
+        let Some(studio) = &mut self.studio else { return false };
         match studio.save(path) {
             Ok(()) => {
                 self.recovery.forget();
                 self.settings.opened(path);
                 self.remember();
                 self.note_document();
+                true
             }
-            Err(error) => self.say(&error.to_string()),
+            Err(error) => {
+                self.say(&error.to_string());
+                false
+            }
         }
     }
 
@@ -388,13 +426,13 @@ impl App {
         let selected = studio.selected.clone();
         match command {
             Command::Save => match studio.document.path().map(Path::to_path_buf) {
-                Some(path) => self.save(&path),
+                Some(path) => drop(self.save(&path)),
                 None => self.save_as(),
             },
             Command::SaveAs => self.save_as(),
             Command::Export => self.dialogs.export = ExportDialog::new(studio, &self.panels.relief.shown(studio)),
-            Command::Undo => drop(studio.document.undo()),
-            Command::Redo => drop(studio.document.redo()),
+            Command::Undo => drop(studio.undo()),
+            Command::Redo => drop(studio.redo()),
             Command::NextSeed => {
                 let seed = studio.document.recipe().world.seed;
                 let next = Edit::Seed(if seed >= i64::MAX as u64 { 0 } else { seed + 1 });
@@ -439,14 +477,17 @@ impl App {
 
     /// Adds the actions of keyboard shortcuts.
     fn keys(context: &Context, actions: &mut Vec<Action>) {
+        // Text fields need keys such as Home.
+        let is_typing = context.egui_wants_keyboard_input();
+        let is_free =
+            |keys: &KeyboardShortcut| !(is_typing && keys.modifiers.is_none() && keys.logical_key == Key::Home);
+        let entries = command::ALL.iter().flat_map(|entry| entry.shortcuts().map(move |keys| (entry.command, keys)));
+        let mut entries: Vec<(Command, KeyboardShortcut)> = entries.filter(|(_, keys)| is_free(keys)).collect();
         // Longer combinations first, so that Ctrl+Shift+Z does not trigger Ctrl+Z.
-        let mut entries: Vec<&command::Entry> = command::ALL.iter().filter(|entry| entry.keys.is_some()).collect();
-        entries.sort_by_key(|entry| !entry.keys.is_some_and(|keys| keys.modifiers.shift));
-        for entry in entries {
-            if let Some(keys) = entry.keys
-                && context.input_mut(|input| input.consume_shortcut(&keys))
-            {
-                actions.push(Action::Command(entry.command));
+        entries.sort_by_key(|(_, keys)| !keys.modifiers.shift);
+        for (command, keys) in entries {
+            if context.input_mut(|input| input.consume_shortcut(&keys)) {
+                actions.push(Action::Command(command));
             }
         }
     }
@@ -458,37 +499,18 @@ impl App {
         actions.extend(paths.into_iter().take(1).map(Action::Open));
     }
 
-    /// Offers the text that a crash left behind.
-    fn recover(&mut self, context: &Context) {
-        let Some((title, _)) = &self.recovered else { return };
-        let language = self.language;
-        let mut answer = None;
-        let mut is_open = true;
-        dialogs::window(context, language.text("recovery.title"), &mut is_open, egui::vec2(380.0, 90.0), |ui| {
-            ui.label(language.fill("recovery.text", &[("name", title)]));
-            ui.horizontal(|ui| {
-                if ui.button(language.text("recovery.open")).clicked() {
-                    answer = Some(true);
-                }
-                if ui.button(language.text("recovery.drop")).clicked() {
-                    answer = Some(false);
-                }
-            });
-        });
-        match answer.or((!is_open).then_some(false)) {
-            Some(true) => self.open_recovered(),
-            Some(false) => {
-                self.recovered = None;
-                self.recovery.forget();
-            }
-            None => {}
+    /// Opens a text that was not saved.
+    fn open_unsaved(&mut self, unsaved: &Unsaved) {
+        match self.recovery.take(unsaved) {
+            Some(document) => self.open(document),
+            None => self.say(&self.language.fill("recovery.gone", &[("name", &unsaved.title)])),
         }
+        self.no_longer_offer(unsaved);
     }
 
-    /// Opens the text that a crash left behind. It has no file, so saving asks for one.
-    fn open_recovered(&mut self) {
-        if let Some((title, text)) = self.recovered.take() {
-            self.open(Document::recovered(&PathBuf::from(format!("{title}.toml")), text));
+    fn no_longer_offer(&mut self, unsaved: &Unsaved) {
+        if let Some(dialog) = &mut self.dialogs.recovery {
+            dialog.remove(unsaved);
         }
     }
 
@@ -513,23 +535,25 @@ impl App {
     fn ask(&mut self, context: &Context) {
         let (Some(pending), Some(studio)) = (self.pending.clone(), &self.studio) else { return };
         match dialogs::unsaved(context, studio.document.title(), self.language) {
-            Some(Unsaved::Save) => {
+            Some(Decision::Save) => {
                 self.pending = None;
                 match studio.document.path().map(Path::to_path_buf) {
                     Some(path) => {
-                        self.save(&path);
-                        if self.studio.as_ref().is_some_and(|studio| !studio.document.is_changed()) {
+                        if self.save(&path) {
                             self.go(pending, context);
                         }
                     }
-                    None => self.save_as(),
+                    None => {
+                        self.save_as();
+                        self.after_save = Some(pending);
+                    }
                 }
             }
-            Some(Unsaved::Drop) => {
+            Some(Decision::Drop) => {
                 self.pending = None;
                 self.go(pending, context);
             }
-            Some(Unsaved::Cancel) => self.pending = None,
+            Some(Decision::Cancel) => self.pending = None,
             None => {}
         }
     }
@@ -542,11 +566,7 @@ impl eframe::App for App {
         let mut actions = Vec::new();
         if let Some(studio) = &mut self.studio {
             studio.poll();
-            let now = context.input(|input| input.time);
-            if now - self.watched > WATCH {
-                self.watched = now;
-                studio.watch();
-            }
+            studio.watch();
         }
         Self::keys(&context, &mut actions);
         Self::dropped(&context, &mut actions);
@@ -560,23 +580,29 @@ impl eframe::App for App {
             language: self.language,
         };
         self.panels.show(ui, &shown, &mut actions);
-        let view = self.studio.as_ref().map(|studio| self.panels.relief.shown(studio));
+        let view = self.shown_view();
         self.dialogs.show(&context, self.studio.as_ref().zip(view.as_ref()), &self.wake, self.language, &mut actions);
-        self.recover(&context);
         self.ask(&context);
         for action in actions {
             self.act(action, &context);
         }
+        if self.dialogs.files.is_none() {
+            // The dialog was closed without a name.
+            self.after_save = None;
+        }
         if let Some(studio) = &mut self.studio {
             studio.refresh();
             self.recovery.keep(&studio.document);
+            if let Some(frame) = studio.frame.as_ref().filter(|_| studio.is_done()) {
+                self.recovery.picture(&studio.document, || recovery_dialog::picture(frame));
+            }
             let mark = if studio.document.is_changed() { "*" } else { "" };
             let title = format!("{mark}{} – Orogen", studio.document.title());
-            if context.input(|input| input.viewport().title.as_deref() != Some(title.as_str())) {
+            if self.title != title {
+                // Each command makes the window draw again, and some systems do not tell its title.
+                self.title.clone_from(&title);
                 context.send_viewport_cmd(egui::ViewportCommand::Title(title));
             }
-            // The file may change while nothing else happens.
-            context.request_repaint_after(std::time::Duration::from_secs_f64(WATCH));
         }
         if context.input(|input| input.viewport().close_requested()) {
             if !self.may_close && self.studio.as_ref().is_some_and(|studio| studio.document.is_changed()) {

@@ -70,14 +70,16 @@ pub struct Entry {
     pub name: &'static str,
     /// The menu.
     pub menu: Menu,
-    /// The keyboard shortcut.
+    /// The keyboard shortcut, as it is shown.
     pub keys: Option<KeyboardShortcut>,
+    /// Another keyboard shortcut, which users of other programs know.
+    pub also: Option<KeyboardShortcut>,
     /// Whether it needs a document.
     pub needs_document: bool,
 }
 
 const fn entry(command: Command, name: &'static str, menu: Menu, needs_document: bool) -> Entry {
-    Entry { command, name, menu, keys: None, needs_document }
+    Entry { command, name, menu, keys: None, also: None, needs_document }
 }
 
 const fn with_keys(
@@ -88,7 +90,18 @@ const fn with_keys(
     modifiers: Modifiers,
     key: Key,
 ) -> Entry {
-    Entry { command, name, menu, keys: Some(KeyboardShortcut::new(modifiers, key)), needs_document }
+    Entry { command, name, menu, keys: Some(KeyboardShortcut::new(modifiers, key)), also: None, needs_document }
+}
+
+impl Entry {
+    const fn also(self, modifiers: Modifiers, key: Key) -> Entry {
+        Entry { also: Some(KeyboardShortcut::new(modifiers, key)), ..self }
+    }
+
+    /// The keyboard shortcuts.
+    pub fn shortcuts(&self) -> impl Iterator<Item = KeyboardShortcut> {
+        [self.keys, self.also].into_iter().flatten()
+    }
 }
 
 const CTRL: Modifiers = Modifiers::COMMAND;
@@ -103,7 +116,7 @@ pub static ALL: [Entry; 27] = [
     with_keys(Command::Export, "command.export", Menu::File, true, CTRL, Key::E),
     with_keys(Command::Quit, "command.quit", Menu::File, false, CTRL, Key::Q),
     with_keys(Command::Undo, "command.undo", Menu::Edit, true, CTRL, Key::Z),
-    with_keys(Command::Redo, "command.redo", Menu::Edit, true, CTRL_SHIFT, Key::Z),
+    with_keys(Command::Redo, "command.redo", Menu::Edit, true, CTRL_SHIFT, Key::Z).also(CTRL, Key::Y),
     with_keys(Command::NextSeed, "command.next_seed", Menu::Edit, true, CTRL, Key::R),
     with_keys(Command::AddNode, "command.add_node", Menu::Edit, true, CTRL, Key::Space),
     with_keys(Command::Duplicate, "command.duplicate", Menu::Edit, true, CTRL, Key::D),
@@ -142,7 +155,8 @@ mod tests {
         for (n, entry) in ALL.iter().enumerate() {
             for other in &ALL[..n] {
                 assert_ne!(entry.command, other.command);
-                assert!(entry.keys.is_none() || entry.keys != other.keys, "{} and {}", entry.name, other.name);
+                let is_shared = entry.shortcuts().any(|keys| other.shortcuts().any(|theirs| theirs == keys));
+                assert!(!is_shared, "{} and {}", entry.name, other.name);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Dialogs: choosing a file, the command palette, the list of shortcuts, unsaved changes, messages.
 
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use eframe::egui::{self, Align2, Context, Key, RichText, ScrollArea, TextEdit, Vec2, vec2};
 
@@ -21,6 +22,12 @@ pub struct FileDialog {
     entries: Vec<files::Entry>,
     failure: Option<String>,
     is_new: bool,
+    /// The file that the dialog started at. Saving to it replaces nothing else.
+    own: Option<PathBuf>,
+    /// An existing file that may be replaced.
+    asks: Option<Overwrite>,
+    /// The name of a new folder, while it is typed.
+    new_folder: Option<String>,
 }
 
 impl FileDialog {
@@ -36,6 +43,9 @@ impl FileDialog {
             entries: Vec::new(),
             failure: None,
             is_new: true,
+            own: at.map(Path::to_path_buf),
+            asks: None,
+            new_folder: None,
         };
         dialog.look();
         dialog
@@ -66,10 +76,24 @@ impl FileDialog {
 
     /// Shows the dialog; false once it is closed.
     pub fn show(&mut self, context: &Context, language: Language, actions: &mut Vec<Action>) -> bool {
+        if let Some(asks) = &self.asks {
+            match asks.show(context, language) {
+                Some(true) => {
+                    actions.push(self.action(asks.path.clone()));
+                    return false;
+                }
+                Some(false) => self.asks = None,
+                None => {}
+            }
+            return true;
+        }
         let mut is_open = true;
         let mut chosen = None;
         window(context, language.text(self.purpose.title()), &mut is_open, vec2(520.0, 400.0), |ui| {
             ui.horizontal(|ui| {
+                if self.purpose.saves() {
+                    self.make_folder(ui, language);
+                }
                 let parent = self.folder.parent().map(Path::to_path_buf);
                 if ui.add_enabled(parent.is_some(), egui::Button::new("..")).clicked()
                     && let Some(parent) = parent
@@ -125,16 +149,112 @@ impl FileDialog {
             if self.purpose.saves() && path.extension().is_none() {
                 path.set_extension("toml");
             }
-            actions.push(match self.purpose {
-                Purpose::Open => Action::Open(path),
-                Purpose::Save => Action::Save(path),
-                Purpose::OpenPalette => Action::OpenPalette(path),
-                Purpose::SavePalette => Action::SavePalette(path),
-            });
-            return false;
+            if self.purpose.saves() && self.own.as_ref() != Some(&path) {
+                self.asks = Overwrite::of(&path);
+            }
+            if self.asks.is_none() {
+                actions.push(self.action(path));
+                return false;
+            }
         }
         is_open && !context.input(|input| input.key_pressed(Key::Escape))
     }
+
+    fn action(&self, path: PathBuf) -> Action {
+        match self.purpose {
+            Purpose::Open => Action::Open(path),
+            Purpose::Save => Action::Save(path),
+            Purpose::OpenPalette => Action::OpenPalette(path),
+            Purpose::SavePalette => Action::SavePalette(path),
+        }
+    }
+
+    /// The button for a new folder, and the field for its name.
+    fn make_folder(&mut self, ui: &mut egui::Ui, language: Language) {
+        let button = ui.button(language.text("file.new_folder"));
+        if button.clicked() {
+            self.new_folder = Some(String::new());
+        }
+        let Some(name) = &mut self.new_folder else { return };
+        let hint = language.text("file.folder_name");
+        let field = ui.add(TextEdit::singleline(name).desired_width(120.0).hint_text(hint));
+        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "folder name"));
+        if button.clicked() {
+            field.request_focus();
+        }
+        if !field.lost_focus() {
+            return;
+        }
+        let is_confirmed = ui.input(|input| input.key_pressed(Key::Enter)) && !name.trim().is_empty();
+        let folder = self.folder.join(name.trim());
+        self.new_folder = None;
+        if is_confirmed {
+            match files::make_folder(&folder) {
+                Ok(()) => self.enter(folder),
+                Err(error) => self.failure = Some(error.to_string()),
+            }
+        }
+    }
+}
+
+/// The question whether an existing file or folder may be replaced.
+#[derive(Debug)]
+pub struct Overwrite {
+    /// The file or folder.
+    pub path: PathBuf,
+    about: files::About,
+}
+
+impl Overwrite {
+    /// The question for a path; `None` if there is nothing to replace.
+    #[must_use]
+    pub fn of(path: &Path) -> Option<Overwrite> {
+        files::about(path).map(|about| Overwrite { path: path.to_path_buf(), about })
+    }
+
+    /// Asks; the answer once there is one.
+    #[must_use]
+    pub fn show(&self, context: &Context, language: Language) -> Option<bool> {
+        let mut answer = None;
+        let mut is_open = true;
+        window(context, language.text("overwrite.title"), &mut is_open, vec2(400.0, 90.0), |ui| {
+            let name = self.path.file_name().unwrap_or(self.path.as_os_str()).to_string_lossy();
+            ui.strong(name);
+            let size = match self.about.is_folder {
+                true => language.fill("overwrite.entries", &[("count", &self.about.size.to_string())]),
+                false => orogen::grid::words::bytes(self.about.size),
+            };
+            ui.label(
+                language.fill("overwrite.about", &[("size", &size), ("when", &ago(self.about.changed, language))]),
+            );
+            ui.label(language.text(if self.about.is_folder { "overwrite.folder" } else { "overwrite.file" }));
+            ui.add_space(8.0);
+            ui.horizontal(|ui| {
+                if ui.button(language.text("overwrite.replace")).clicked() {
+                    answer = Some(true);
+                }
+                if ui.button(language.text("overwrite.keep")).clicked() {
+                    answer = Some(false);
+                }
+            });
+        });
+        let is_closed = !is_open || context.input(|input| input.key_pressed(Key::Escape));
+        if is_closed { Some(false) } else { answer }
+    }
+}
+
+/// How long ago something happened, in words.
+#[must_use]
+pub fn ago(when: Option<SystemTime>, language: Language) -> String {
+    // A clock that was set back gives a time in the future.
+    let Some(seconds) = when.map(|when| when.elapsed().unwrap_or_default().as_secs()) else { return String::new() };
+    let (key, count) = match seconds {
+        0..60 => ("ago.now", 0),
+        60..3600 => ("ago.minutes", seconds / 60),
+        3600..172_800 => ("ago.hours", seconds / 3600),
+        _ => ("ago.days", seconds / 86_400),
+    };
+    language.fill(key, &[("count", &count.to_string())])
 }
 
 /// The command palette.
@@ -233,7 +353,7 @@ pub fn shortcuts(context: &Context, language: Language) -> bool {
 
 /// The user's decision about unsaved changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unsaved {
+pub enum Decision {
     /// Save them.
     Save,
     /// Discard them.
@@ -244,16 +364,18 @@ pub enum Unsaved {
 
 /// Asks what to do with unsaved changes.
 #[must_use]
-pub fn unsaved(context: &Context, title: &str, language: Language) -> Option<Unsaved> {
+pub fn unsaved(context: &Context, title: &str, language: Language) -> Option<Decision> {
     let mut answer = None;
     let mut is_open = true;
     window(context, language.text("unsaved.title"), &mut is_open, vec2(360.0, 90.0), |ui| {
         ui.label(language.fill("unsaved.text", &[("name", title)]));
         ui.add_space(8.0);
         ui.horizontal(|ui| {
-            for (name, choice) in
-                [("unsaved.save", Unsaved::Save), ("unsaved.drop", Unsaved::Drop), ("unsaved.cancel", Unsaved::Cancel)]
-            {
+            for (name, choice) in [
+                ("unsaved.save", Decision::Save),
+                ("unsaved.drop", Decision::Drop),
+                ("unsaved.cancel", Decision::Cancel),
+            ] {
                 if ui.button(language.text(name)).clicked() {
                     answer = Some(choice);
                 }
@@ -261,7 +383,7 @@ pub fn unsaved(context: &Context, title: &str, language: Language) -> Option<Uns
         });
     });
     if !is_open || context.input(|input| input.key_pressed(Key::Escape)) {
-        answer = Some(Unsaved::Cancel);
+        answer = Some(Decision::Cancel);
     }
     answer
 }

@@ -6,7 +6,7 @@ use eframe::egui::{self, Context, Label, ProgressBar, RichText, ScrollArea, Text
 use orogen::grid::words::number;
 
 use super::action::Action;
-use super::dialogs::window;
+use super::dialogs::{Overwrite, window};
 use super::export_fields::{engine, layer, map, render, rows, tilemap};
 use super::relief_panel::ShownView;
 use crate::catalogue::Language;
@@ -23,8 +23,12 @@ pub struct ExportDialog {
     /// The file as it is typed.
     path: String,
     running: Option<Running>,
+    /// The file of the last export.
+    made: String,
     /// The result of the last export.
     outcome: Option<Result<String, String>>,
+    /// The question whether existing files may be replaced.
+    asks: Option<Overwrite>,
 }
 
 /// Maximum height of the fields, and the height of the other parts.
@@ -39,7 +43,8 @@ impl ExportDialog {
         let folder = document.path().and_then(std::path::Path::parent).map(PathBuf::from).unwrap_or_default();
         let mut export = Export::new(studio.look.region, document.title(), document.is_place(), &folder)?;
         render::follow(&mut export.render, view);
-        Some(ExportDialog { path: shown(&export), export, running: None, outcome: None })
+        let path = shown(&export);
+        Some(ExportDialog { path, export, running: None, made: String::new(), outcome: None, asks: None })
     }
 
     /// The export with its settings.
@@ -64,6 +69,13 @@ impl ExportDialog {
         if self.running.is_none() {
             self.export.region = studio.look.region;
         }
+        if let Some(answer) = self.asks.as_ref().and_then(|asks| asks.show(context, language)) {
+            self.asks = None;
+            if answer {
+                self.start(studio, wake);
+            }
+            return true;
+        }
         let mut is_open = true;
         window(context, language.text("export.title"), &mut is_open, vec2(520.0, 420.0), |ui| {
             ui.add_enabled_ui(self.running.is_none(), |ui| {
@@ -78,7 +90,8 @@ impl ExportDialog {
             ui.separator();
             self.ending(ui, studio, wake, language, actions);
         });
-        is_open && !(self.running.is_none() && context.input(|input| input.key_pressed(egui::Key::Escape)))
+        let is_free = self.running.is_none() && self.asks.is_none();
+        is_open && !(is_free && context.input(|input| input.key_pressed(egui::Key::Escape)))
     }
 
     fn kinds(&mut self, ui: &mut Ui, language: Language) {
@@ -147,15 +160,20 @@ impl ExportDialog {
                     ui.add(ProgressBar::new(running.share()).desired_width(200.0).show_percentage());
                 }
                 None => {
-                    if ui.button(RichText::new(language.text("export.start")).strong()).clicked() {
-                        self.start(studio, wake);
+                    let is_asking = self.asks.is_some();
+                    let start = egui::Button::new(RichText::new(language.text("export.start")).strong());
+                    if ui.add_enabled(!is_asking, start).clicked() {
+                        self.asks = Overwrite::of(self.export.path());
+                        if self.asks.is_none() {
+                            self.start(studio, wake);
+                        }
                     }
                 }
             }
         });
         match &self.outcome {
             Some(Ok(words)) => {
-                let text = language.fill("export.done", &[("file", &self.path), ("what", words)]);
+                let text = language.fill("export.done", &[("file", &self.made), ("what", words)]);
                 ScrollArea::vertical().id_salt("outcome").max_height(150.0).show(ui, |ui| ui.label(text));
             }
             Some(Err(error)) => drop(ui.colored_label(ui.visuals().error_fg_color, error)),
@@ -167,6 +185,7 @@ impl ExportDialog {
         let own = studio.document.path().map(PathBuf::from);
         let recipe = studio.document.recipe().clone();
         self.outcome = None;
+        self.made.clone_from(&self.path);
         match Running::start(self.export.clone(), recipe, own, &studio.session(), wake.clone()) {
             Ok(running) => self.running = Some(running),
             Err(error) => self.outcome = Some(Err(error.to_string())),

@@ -120,10 +120,12 @@ pub fn value(ui: &mut Ui, label: &str, shape: Shape, value: &Value, declared: &N
         (Shape::Flag, Value::Flag(own)) => {
             let mut flag = *own;
             let response = ui.checkbox(&mut flag, "");
+            let name = label.to_owned();
+            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::CheckBox, true, name.clone()));
             Input { value: response.changed().then_some(Value::Flag(flag)), ended: response.changed() }
         }
         (Shape::Choice(choices), Value::Text(own)) => choice(ui, label, &choices(), own).map(Value::Text),
-        (Shape::Pair, Value::List(items)) => pair(ui, items),
+        (Shape::Pair, Value::List(items)) => pair(ui, label, items),
         (Shape::Curve, Value::List(items)) => curve(ui, items),
         (Shape::Expression | Shape::File | Shape::Crs, Value::Text(own)) => text(ui, label, own).map(Value::Text),
         _ => {
@@ -135,13 +137,15 @@ pub fn value(ui: &mut Ui, label: &str, shape: Shape, value: &Value, declared: &N
 
 fn choice(ui: &mut Ui, label: &str, choices: &[(&'static str, &'static str)], own: &str) -> Input<String> {
     let mut chosen = None;
-    ComboBox::from_id_salt(label).selected_text(own).show_ui(ui, |ui| {
+    let list = ComboBox::from_id_salt(label).selected_text(own).show_ui(ui, |ui| {
         for (name, about) in choices {
             if ui.selectable_label(*name == own, *name).on_hover_text(about.trim()).clicked() {
                 chosen = Some((*name).to_owned());
             }
         }
     });
+    let label = label.to_owned();
+    list.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, label.clone()));
     Input { ended: chosen.is_some(), value: chosen }
 }
 
@@ -154,13 +158,13 @@ pub fn text(ui: &mut Ui, label: &str, own: &str) -> Input<String> {
     Input::of(&response, typed)
 }
 
-fn pair(ui: &mut Ui, items: &[Spanned<Value>]) -> Input<Value> {
+fn pair(ui: &mut Ui, label: &str, items: &[Spanned<Value>]) -> Input<Value> {
     let mut numbers: Vec<f64> = items.iter().filter_map(|item| item.value.number()).collect();
     let mut input = Input::none();
     ui.horizontal(|ui| {
         for number in &mut numbers {
             let speed = (number.abs() * 0.005).max(1e-3);
-            let response = ui.add(DragValue::new(number).speed(speed).max_decimals(6));
+            let response = named(ui.add(DragValue::new(number).speed(speed).max_decimals(6)), label);
             input.ended |= response.drag_stopped() || response.lost_focus();
             if response.changed() {
                 input.value = Some(());

@@ -24,6 +24,7 @@ fn color(kind: Kind) -> Color32 {
         Kind::Node(Locality::Solver) => Color32::from_rgb(186, 112, 62),
         Kind::Group => Color32::from_rgb(96, 104, 118),
         Kind::Outside => Color32::from_rgb(120, 120, 120),
+        Kind::Output => Color32::from_rgb(60, 110, 108),
     }
 }
 
@@ -34,6 +35,7 @@ pub fn size(block: &GraphBox, has_pictures: bool) -> Vec2 {
     let picture = if has_pictures { PICTURE + 2.0 * GAP } else { 0.0 };
     let below = match block.kind {
         Kind::Outside => ROW * rows + GAP,
+        Kind::Output => 0.0,
         // In a node, inputs are next to the picture; in a group, they are above it.
         Kind::Node(_) => (ROW * rows.max(1.0) + GAP).max(picture),
         Kind::Group => ROW * rows.max(1.0) + GAP + picture,
@@ -50,6 +52,9 @@ fn rows(block: &GraphBox) -> usize {
 /// The vertical position of an input in a box at normal size.
 #[must_use]
 pub fn port(block: &GraphBox, k: usize) -> f32 {
+    if block.kind == Kind::Output {
+        return TITLE * 0.5;
+    }
     let above = if block.kind == Kind::Group { block.outlets.len() } else { 0 };
     TITLE + ROW * ((above + k) as f32 + 0.5)
 }
@@ -59,7 +64,7 @@ pub fn port(block: &GraphBox, k: usize) -> f32 {
 pub fn outlet(block: &GraphBox, k: usize) -> f32 {
     match block.kind {
         Kind::Group => TITLE + ROW * (k as f32 + 0.5),
-        Kind::Node(_) | Kind::Outside => TITLE * 0.5,
+        Kind::Node(_) | Kind::Outside | Kind::Output => TITLE * 0.5,
     }
 }
 

@@ -8,7 +8,6 @@ use eframe::egui::{
     TextureHandle, TextureOptions, Ui, UiBuilder, Vec2, pos2, vec2,
 };
 use orogen::declare::Input;
-use orogen::node::Node;
 
 use super::action::Action;
 use super::command::Command;
@@ -18,9 +17,9 @@ use super::menu;
 use crate::catalogue::Language;
 use crate::editing::brush::Effect;
 use crate::editing::edit::Edit;
-use crate::editing::{drawing, groups, names, strokes};
+use crate::editing::{adding, drawing, groups, names, strokes};
 use crate::preview::picture::Picture;
-use crate::studio::Studio;
+use crate::studio::{Studio, surface};
 use crate::view::arrangement::{self, Area};
 use crate::view::scene::{End, GraphBox, Kind, Scene};
 
@@ -300,14 +299,16 @@ impl Graph {
             Kind::Node(_) => format!("node {}", block.id),
             Kind::Group => format!("group {}", block.id.trim_end_matches('/')),
             Kind::Outside => format!("outside {}", block.title),
+            Kind::Output => format!("output box {}", block.title),
         };
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, label.clone()));
-        let is_selected = block.kind != Kind::Outside && block.nodes.iter().all(|name| studio.selected.contains(name));
+        let is_own = !matches!(block.kind, Kind::Outside | Kind::Output);
+        let is_selected = is_own && block.nodes.iter().all(|name| studio.selected.contains(name));
         if response.dragged_by(PointerButton::Primary) {
             let moved = |other: &&GraphBox| {
                 other.id == block.id
                     || is_selected
-                        && other.kind != Kind::Outside
+                        && !matches!(other.kind, Kind::Outside | Kind::Output)
                         && other.nodes.iter().all(|name| studio.selected.contains(name))
             };
             for key in scene.boxes.iter().filter(moved).map(|block| self.key(block)).collect::<Vec<_>>() {
@@ -317,12 +318,13 @@ impl Graph {
             }
         }
         self.click(ui, &response, block, is_selected, studio, actions);
-        if block.kind != Kind::Outside {
+        if is_own {
             response.context_menu(|ui| self.menu(ui, block, studio, language, actions));
         }
         let shown = Shown {
             is_selected,
-            is_in_view: block.nodes.contains(&studio.look.layer),
+            is_in_view: block.nodes.contains(&studio.look.layer)
+                || block.kind == Kind::Output && block.title == studio.look.layer,
             picture: block
                 .outlets
                 .first()
@@ -361,6 +363,12 @@ impl Graph {
             }
             return;
         }
+        if block.kind == Kind::Output {
+            if response.clicked() || response.double_clicked() {
+                actions.push(Action::Show(block.title.clone()));
+            }
+            return;
+        }
         let adds = ui.input(|input| input.modifiers.command || input.modifiers.shift);
         let is_dragged = response.drag_started_by(PointerButton::Primary);
         let is_menu = response.secondary_clicked();
@@ -394,7 +402,15 @@ impl Graph {
                 }
             }
             None => {
-                entry(ui, "inspector.show", block.nodes.first().map(|name| Action::Show(name.clone())));
+                let node = block.nodes.first();
+                entry(ui, "inspector.show", node.map(|name| Action::Show(name.clone())));
+                let recipe = studio.document.recipe();
+                let name = surface(recipe);
+                let source = Input::Node(block.id.clone());
+                let is_it = recipe.output_inputs().iter().any(|(output, input)| *output == name && *input == source);
+                if studio.document.is_valid() && !is_it {
+                    entry(ui, "graph.use_as_height", Some(Action::Edit(Edit::Output { name, source })));
+                }
             }
         }
         ui.separator();
@@ -429,6 +445,11 @@ impl Graph {
         self.wire = None;
         let under = all().find(|(_, rect)| rect.expand(8.0 * self.zoom).contains(pointer));
         let Some((block, rect)) = under.filter(|(block, _)| !block.outlets.contains(&source)) else { return };
+        if block.kind == Kind::Output {
+            let name = block.title.clone();
+            actions.push(Action::Edit(Edit::Output { name, source: Input::Node(source) }));
+            return;
+        }
         // On the title, the first input is used; a node without inputs has a mask.
         let near = graph_box::port_near(block, (pointer.y - rect.top()) / self.zoom).and_then(|k| block.ports.get(k));
         let (node, input) = match (near, block.kind) {
@@ -459,27 +480,23 @@ impl Graph {
         let recipe = studio.document.recipe();
         let taken = recipe.nodes().iter().filter_map(|named| groups::rest(&named.name, &self.group)).collect();
         let name = groups::within(&self.group, &names::free(&names::of_op(op), &taken));
-        // The new node reads the selected node.
-        let inputs = studio.selected.first().and_then(|selected| {
-            let node = Node::named(op)?;
-            let first = node.spec().inputs.first().map(|input| input.name);
-            let first = first.or(node.spec().named_inputs.then_some("a"))?;
-            Some((first.to_owned(), selected.clone()))
-        });
-        if inputs.is_none() {
+        let range = studio.frame.as_ref().map(|frame| frame.range());
+        let selected = studio.selected.first().map(String::as_str);
+        let edit = adding::edit(recipe, name.clone(), op, selected, range);
+        let has_input = matches!(&edit, Edit::Add { inputs, .. } if !inputs.is_empty());
+        if !has_input {
             // A free position near the pointer.
             let size = |block: &GraphBox| graph_box::size(block, studio.has_thumbnails).into();
             let boxes = self.scene.boxes.iter();
             let taken: Vec<Area> =
                 boxes.filter_map(|block| Some((self.place_of(block)?.into(), size(block)))).collect();
             let free = arrangement::free(search.at.into(), [WIDTH, 120.0], &taken);
-            self.places.insert(name.clone(), free.into());
+            self.places.insert(name, free.into());
         }
         if op == strokes::OP {
             // With an input it changes heights; without one it is a mask.
-            actions.push(Action::Brush(if inputs.is_some() { Effect::Raise } else { Effect::Paint }));
+            actions.push(Action::Brush(if has_input { Effect::Raise } else { Effect::Paint }));
         }
-        let inputs = inputs.into_iter().collect();
-        actions.push(Action::Edit(Edit::Add { name, op: op.to_owned(), inputs, params: Vec::new() }));
+        actions.push(Action::Edit(edit));
     }
 }

@@ -256,9 +256,10 @@ fn world(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Act
     let world = studio.document.recipe().world;
     CollapsingHeader::new(language.text("inspector.world")).default_open(true).show(ui, |ui| {
         ui.horizontal(|ui| {
-            ui.label(language.text("inspector.seed"));
+            let label = ui.label(language.text("inspector.seed"));
             let mut seed = world.seed;
             let field = ui.add(DragValue::new(&mut seed).range(0..=i64::MAX as u64).speed(0.2));
+            let field = field.labelled_by(label.id);
             if field.changed() {
                 actions.push(Action::Edit(Edit::Seed(seed)));
             }
@@ -270,9 +271,10 @@ fn world(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Act
             }
         });
         ui.horizontal(|ui| {
-            ui.label(language.text("inspector.sea_level"));
+            let label = ui.label(language.text("inspector.sea_level"));
             let mut level = world.sea_level;
             let field = ui.add(DragValue::new(&mut level).speed(2.0).suffix(" m").max_decimals(3));
+            let field = field.labelled_by(label.id);
             if field.changed() {
                 actions.push(Action::Edit(Edit::World("sea_level", fields::rounded(level))));
             }
@@ -323,7 +325,7 @@ fn source(
     actions: &mut Vec<Action>,
 ) {
     ui.horizontal(|ui| {
-        ui.label(key).on_hover_text(about);
+        let label = ui.label(key).on_hover_text(about);
         let connect =
             |source: Input| Action::Edit(Edit::Connect { node: node.to_owned(), input: key.to_owned(), source });
         let shown = match input {
@@ -331,7 +333,7 @@ fn source(
             Input::Node(name) => name.clone(),
             Input::Value(_) => language.text("inspector.number").to_owned(),
         };
-        ComboBox::from_id_salt((node, key)).selected_text(shown).show_ui(ui, |ui| {
+        let sources = ComboBox::from_id_salt((node, key)).selected_text(shown).show_ui(ui, |ui| {
             if !is_required && ui.selectable_label(*input == Input::None, language.text("inspector.nothing")).clicked()
             {
                 actions.push(connect(Input::None));
@@ -353,9 +355,11 @@ fn source(
                 }
             }
         });
+        sources.response.labelled_by(label.id);
         if let Input::Value(value) = input {
             let mut number = *value;
             let field = ui.add(DragValue::new(&mut number).speed((value.abs() * 0.01).max(0.01)).max_decimals(6));
+            let field = field.labelled_by(label.id);
             if field.changed() {
                 actions.push(connect(Input::Value(fields::rounded(number))));
             }

@@ -39,9 +39,7 @@ impl MapBrush {
     fn with(&mut self, effect: Effect, frame: &Frame) -> &mut Brush {
         let brush = self.brush.get_or_insert_with(|| {
             let window = frame.window();
-            let finite = frame.heights.data().iter().copied().filter(|height| height.is_finite());
-            let range = finite
-                .fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], height| [low.min(height), high.max(height)]);
+            let range = frame.range().map(|height| height as f32);
             Brush::fitting(effect, window.width.max(window.height) as f64 * window.cell, range)
         });
         brush.effect = effect;
@@ -60,7 +58,7 @@ impl MapBrush {
                 *value = new;
             }
         };
-        ui.horizontal_wrapped(|ui| {
+        ui.horizontal(|ui| {
             set(ui, "map.radius", &mut brush.radius, &length);
             set(ui, "map.hardness", &mut brush.hardness, &share);
             match effect.is_of_heights() {
@@ -70,13 +68,14 @@ impl MapBrush {
         });
     }
 
-    /// Paints while the button is pressed; `[`, `]` and Ctrl with the wheel change the radius.
+    /// Paints while the button is pressed; `[`, `]` and Ctrl with the wheel change the radius. A stroke begins only if
+    /// the press is free, not one that closes a menu.
     pub fn paint(
         &mut self,
         ui: &Ui,
         response: &Response,
         (rect, view): (Rect, &MapView),
-        studio: &Studio,
+        (studio, is_free): (&Studio, bool),
         actions: &mut Vec<Action>,
     ) {
         let Some(brush) = &mut self.brush else { return };
@@ -96,7 +95,7 @@ impl MapBrush {
         let begins = is_down && ui.input(|input| input.pointer.primary_pressed());
         match &mut self.painting {
             // A press and its release may occur in one frame.
-            None if begins || response.clicked() => {
+            None if is_free && (begins || response.clicked()) => {
                 let at = ui.input(|input| input.pointer.press_origin()).or(response.interact_pointer_pos());
                 let Some(painting) = at.and_then(|at| begin(*brush, studio, world(at))) else { return };
                 actions.push(Action::Edit(painting.edit()));

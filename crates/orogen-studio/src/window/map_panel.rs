@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use eframe::egui::{
     self, Align2, Color32, ColorImage, FontId, Key, PointerButton, Rect, Sense, Stroke, TextureHandle, TextureOptions,
-    Ui, Vec2, pos2,
+    Ui, UiBuilder, Vec2, pos2,
 };
 
 use super::action::Action;
@@ -39,6 +39,8 @@ pub struct MapPanel {
     /// The picture that later ones are compared with.
     kept: Option<Kept>,
     contours: ContourLines,
+    /// Whether a menu or list was open in the previous frame.
+    had_popup: bool,
 }
 
 /// A picture that is kept for a comparison.
@@ -68,6 +70,21 @@ enum Tool {
     Brush(Effect),
 }
 
+impl Tool {
+    /// The catalog key of its help.
+    fn help(self) -> &'static str {
+        match self {
+            Tool::Pan => "map.pan_help",
+            Tool::Profile => "map.profile_help",
+            Tool::Draw(_) => "map.draw_help",
+            Tool::Brush(effect) => map_brush::names(effect)[1],
+        }
+    }
+}
+
+/// Height of the row with the settings of a tool, in points.
+const ROW: f32 = 24.0;
+
 /// Maximum side of a picture.
 const LARGEST: usize = 4096;
 
@@ -79,10 +96,20 @@ impl MapPanel {
 
     /// Shows the map.
     pub fn show(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+        // A click that closes a menu is not meant for the map.
+        let is_popup = egui::Popup::is_any_open(ui.ctx());
+        let is_free = !std::mem::replace(&mut self.had_popup, is_popup) && !is_popup;
         self.tools(ui, studio, language, actions);
-        if let (Tool::Brush(effect), Some(frame)) = (self.tool, &studio.frame) {
-            self.brush.settings(ui, effect, frame, language);
-        }
+        // This row is always there, so that the map stays where it is when the tool changes.
+        let (row, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::hover());
+        ui.scope_builder(UiBuilder::new().max_rect(row), |ui| {
+            egui::ScrollArea::horizontal().id_salt("tool").auto_shrink(false).show(ui, |ui| {
+                match (self.tool, &studio.frame) {
+                    (Tool::Brush(effect), Some(frame)) => self.brush.settings(ui, effect, frame, language),
+                    (tool, _) => drop(ui.weak(language.text(tool.help()))),
+                }
+            });
+        });
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "map view"));
         let painter = ui.painter_at(rect);
@@ -108,9 +135,11 @@ impl MapPanel {
             self.navigate(ui, &response, rect, &mut view);
         }
         if is_brush {
-            self.brush.paint(ui, &response, (rect, &view), studio, actions);
+            self.brush.paint(ui, &response, (rect, &view), (studio, is_free), actions);
         }
-        self.draw_line(ui, &response, (rect, &view), studio, actions);
+        if is_free {
+            self.draw_line(ui, &response, (rect, &view), studio, actions);
+        }
         if view != before {
             self.view = Some(view);
         }
@@ -161,20 +190,17 @@ impl MapPanel {
     /// The choice of the tool, and the comparison.
     fn tools(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
         ui.horizontal_wrapped(|ui| {
-            let brushes = Effect::ALL.map(|effect| {
-                let [name, help] = map_brush::names(effect);
-                (Tool::Brush(effect), name, help)
-            });
+            let brushes = Effect::ALL.map(|effect| (Tool::Brush(effect), map_brush::names(effect)[0]));
             let tools = [
-                (Tool::Pan, "map.pan", "map.pan_help"),
-                (Tool::Profile, "map.profile", "map.profile_help"),
-                (Tool::Draw(drawing::OPS[0]), "map.path", "map.draw_help"),
-                (Tool::Draw(drawing::OPS[1]), "map.polygon", "map.draw_help"),
+                (Tool::Pan, "map.pan"),
+                (Tool::Profile, "map.profile"),
+                (Tool::Draw(drawing::OPS[0]), "map.path"),
+                (Tool::Draw(drawing::OPS[1]), "map.polygon"),
             ];
-            for (tool, name, help) in tools.into_iter().chain(brushes) {
+            for (tool, name) in tools.into_iter().chain(brushes) {
                 if ui
                     .selectable_label(self.tool == tool, language.text(name))
-                    .on_hover_text(language.text(help))
+                    .on_hover_text(language.text(tool.help()))
                     .clicked()
                 {
                     self.tool = tool;
@@ -208,7 +234,8 @@ impl MapPanel {
                 ui.toggle_value(&mut kept.is_beside, language.text("map.beside"))
                     .on_hover_text(language.text("map.beside_help"));
                 ui.label("A");
-                ui.add_enabled(!kept.is_beside, egui::Slider::new(&mut kept.share, 0.0..=1.0).show_value(false));
+                let share = egui::Slider::new(&mut kept.share, 0.0..=1.0).show_value(false);
+                ui.add_enabled(!kept.is_beside, share).on_hover_text(language.text("map.share"));
                 ui.label("B");
                 let can_return = kept.text != studio.document.text();
                 let back = ui.add_enabled(can_return, egui::Button::new(language.text("map.return")));
@@ -264,6 +291,7 @@ impl MapPanel {
                 op: op.to_owned(),
                 inputs: Vec::new(),
                 params: vec![(drawing::POINTS.to_owned(), points)],
+                outputs: Vec::new(),
             }));
             self.tool = Tool::Pan;
         }

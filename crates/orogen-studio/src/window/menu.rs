@@ -105,14 +105,15 @@ fn preferences(ui: &mut Ui, settings: &Settings, language: Language, actions: &m
 
 /// Controls for the shown layer and its palette.
 fn shown(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
-    ui.label(language.text("menu.layer"));
-    ComboBox::from_id_salt("layer").selected_text(&studio.look.layer).height(400.0).show_ui(ui, |ui| {
+    let label = ui.label(language.text("menu.layer"));
+    let layers = ComboBox::from_id_salt("layer").selected_text(&studio.look.layer).height(400.0).show_ui(ui, |ui| {
         for layer in studio.layers() {
             if ui.selectable_label(layer == studio.look.layer, &layer).clicked() {
                 actions.push(Action::Show(layer));
             }
         }
     });
+    layers.response.labelled_by(label.id);
     let own = &studio.look.coloring;
     let shown = match own {
         Coloring::Own => language.text("menu.own_palette"),
@@ -122,7 +123,7 @@ fn shown(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Act
         Coloring::Biomes => language.text("colors.biomes"),
         Coloring::Classes => language.text("colors.classes"),
     };
-    ComboBox::from_id_salt("palette").selected_text(shown).height(400.0).show_ui(ui, |ui| {
+    let colors = ComboBox::from_id_salt("palette").selected_text(shown).height(400.0).show_ui(ui, |ui| {
         for (coloring, name) in [
             (Coloring::Own, "menu.own_palette"),
             (Coloring::Surfaces, "colors.surfaces"),
@@ -143,6 +144,7 @@ fn shown(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Act
             }
         }
     });
+    colors.response.on_hover_text(language.text("menu.colors"));
     if ui.button(language.text("colors.edit")).on_hover_text(language.text("colors.edit_help")).clicked() {
         actions.push(Action::EditColors);
     }

@@ -32,6 +32,7 @@ pub mod panels;
 pub mod purpose;
 pub mod ramp_editor;
 pub mod realism_panel;
+pub mod recovery_dialog;
 pub mod relief;
 pub mod relief_panel;
 pub mod restart;

@@ -6,6 +6,7 @@ use super::action::Action;
 use super::dialogs::{self, CommandPalette, FileDialog};
 use super::export_dialog::ExportDialog;
 use super::ramp_editor::RampEditor;
+use super::recovery_dialog::RecoveryDialog;
 use super::relief_panel::ShownView;
 use crate::catalogue::Language;
 use crate::preview::worker::Wake;
@@ -20,6 +21,8 @@ pub struct OpenDialogs {
     pub ramp: Option<RampEditor>,
     /// The export dialog.
     pub export: Option<ExportDialog>,
+    /// The offer of texts that were not saved.
+    pub recovery: Option<RecoveryDialog>,
     /// The command palette.
     pub palette: Option<CommandPalette>,
     /// Whether the list of shortcuts is shown.
@@ -39,6 +42,7 @@ impl OpenDialogs {
         actions: &mut Vec<Action>,
     ) {
         let studio = shown.map(|(studio, _)| studio);
+        self.recovery.take_if(|recovery| !recovery.show(context, language, actions));
         self.files.take_if(|files| !files.show(context, language, actions));
         self.ramp.take_if(|ramp| studio.is_none() || !ramp.show(context, language, actions));
         if let Some(shown) = shown {

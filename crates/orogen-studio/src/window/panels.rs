@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, CentralPanel, Panel, Ui};
+use eframe::egui::{self, CentralPanel, Panel, RichText, Ui};
 use orogen::gpu::Gpu;
 
 use super::action::Action;
@@ -102,7 +102,7 @@ impl Panels {
     pub fn reset(&mut self) {
         self.inspector = Inspector::default();
         (self.graph, self.text, self.map) = (Graph::default(), TextPanel::default(), MapPanel::default());
-        self.relief.show_whole();
+        self.relief.reset();
     }
 
     /// Shows the whole land in each view.
@@ -137,10 +137,13 @@ impl Panels {
                         (Below::Real, "below.real"),
                         (Below::Variants, "below.variants"),
                     ] {
-                        let label = if below == Below::Text && !studio.document.is_valid() {
-                            egui::RichText::new(format!("! {}", language.text(name))).color(ui.visuals().error_fg_color)
-                        } else {
-                            egui::RichText::new(language.text(name))
+                        let label = match below == Below::Text && !studio.document.is_valid() {
+                            // Red on the color of the selection would not be readable.
+                            true if self.below == below => RichText::new(format!("! {}", language.text(name))),
+                            true => {
+                                RichText::new(format!("! {}", language.text(name))).color(ui.visuals().error_fg_color)
+                            }
+                            false => RichText::new(language.text(name)),
                         };
                         if ui.selectable_label(self.below == below, label).clicked() {
                             self.below = below;

@@ -101,9 +101,10 @@ impl RampEditor {
         if field.changed() {
             self.ramp.rename(&name);
         }
-        ComboBox::from_id_salt("start from").selected_text(language.text("colors.start")).height(360.0).show_ui(
-            ui,
-            |ui| {
+        let start = ComboBox::from_id_salt("start from")
+            .selected_text(language.text("colors.start"))
+            .height(360.0)
+            .show_ui(ui, |ui| {
                 for palette in named::all() {
                     if ui.selectable_label(false, palette.name).on_hover_text(palette.about).clicked()
                         && let Ok(other) = RampEditor::new(&palette.palette(), false)
@@ -111,8 +112,10 @@ impl RampEditor {
                         *self = other;
                     }
                 }
-            },
-        );
+            });
+        start
+            .response
+            .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, language.text("colors.start")));
         if ui.button(language.text("colors.reverse")).clicked() {
             self.ramp.reverse();
         }

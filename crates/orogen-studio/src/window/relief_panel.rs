@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Align2, FontId, Key, PointerButton, Rect, Sense, Slider, Ui};
+use eframe::egui::{self, FontId, Key, PointerButton, Rect, Sense, Slider, Ui};
 use eframe::egui_wgpu::Callback;
 use glam::Vec3;
 
@@ -21,8 +21,11 @@ use crate::view::camera::Camera;
 pub struct ReliefPanel {
     /// The camera.
     pub camera: Camera,
-    /// Vertical exaggeration; `None` for a number that suits the land.
+    /// Vertical exaggeration; `None` before the first picture.
     exaggeration: Option<f64>,
+    /// Whether the exaggeration stays as it is. At first it follows the land, until its first complete picture; then
+    /// only the user changes it, so that higher land looks higher.
+    is_settled: bool,
     has_water: bool,
     has_shadows: bool,
     has_wire: bool,
@@ -36,6 +39,7 @@ impl Default for ReliefPanel {
         ReliefPanel {
             camera: Camera::default(),
             exaggeration: None,
+            is_settled: false,
             has_water: true,
             has_shadows: true,
             has_wire: false,
@@ -74,15 +78,18 @@ impl ReliefPanel {
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "relief view"));
         let painter = ui.painter_at(rect);
         let Some(ability) = ability else {
-            say(&painter, rect, language.text("relief.no_graphics"), ui);
+            say(ui, rect, language.text("relief.no_graphics"));
             return;
         };
         self.navigate(ui, &response, rect);
         let Some(frame) = &studio.frame else {
             painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
-            say(&painter, rect, language.text("relief.waiting"), ui);
+            // The line at the bottom of the window says more about failures.
+            let is_failed = studio.failure.is_some() || !studio.document.is_valid();
+            say(ui, rect, language.text(if is_failed { "relief.nothing" } else { "relief.waiting" }));
             return;
         };
+        self.settle(frame);
         let pixels = ui.pixels_per_point();
         let largest = ability.largest as f32;
         // While something moves, a CPU draws fewer pixels.
@@ -138,7 +145,20 @@ impl ReliefPanel {
     /// Shows the whole land from the initial position.
     pub fn show_whole(&mut self) {
         self.camera = Camera::default();
-        self.exaggeration = None;
+    }
+
+    /// Drops what belongs to the land of the previous document.
+    pub fn reset(&mut self) {
+        self.show_whole();
+        (self.exaggeration, self.is_settled) = (None, false);
+    }
+
+    /// Sets the exaggeration by the first pictures of a document.
+    fn settle(&mut self, frame: &Frame) {
+        if !self.is_settled {
+            self.exaggeration = Some(suiting_times(frame));
+            self.is_settled = frame.quality == Quality::Fine;
+        }
     }
 
     fn controls(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
@@ -159,10 +179,11 @@ impl ReliefPanel {
                 actions.push(Action::Sun(sun));
             }
             ui.separator();
-            ui.label(language.text("relief.exaggeration"));
+            let label = ui.label(language.text("relief.exaggeration"));
             let mut times = self.times(studio.frame.as_deref());
-            if ui.add(Slider::new(&mut times, 0.1..=20.0).logarithmic(true).max_decimals(1).suffix("×")).changed() {
-                self.exaggeration = Some(times);
+            let slider = Slider::new(&mut times, 0.1..=20.0).logarithmic(true).max_decimals(1).suffix("×");
+            if ui.add(slider).labelled_by(label.id).changed() {
+                (self.exaggeration, self.is_settled) = (Some(times), true);
             }
             ui.separator();
             contours(ui, studio, language, actions);
@@ -170,11 +191,13 @@ impl ReliefPanel {
             ui.toggle_value(&mut self.has_shadows, language.text("relief.shadows"));
             ui.toggle_value(&mut self.has_wire, language.text("relief.wire"));
             let mut finest = studio.look.finest;
-            egui::ComboBox::from_id_salt("finest").width(64.0).selected_text(finest.to_string()).show_ui(ui, |ui| {
+            let list = egui::ComboBox::from_id_salt("finest").width(64.0).selected_text(finest.to_string());
+            let list = list.show_ui(ui, |ui| {
                 for samples in [256, 512, 1024, 2048, 4096] {
                     ui.selectable_value(&mut finest, samples, format!("{samples}²"));
                 }
             });
+            list.response.on_hover_text(language.text("relief.finest"));
             if finest != studio.look.finest {
                 actions.push(Action::Finest(finest));
             }
@@ -216,15 +239,9 @@ impl ReliefPanel {
         }
     }
 
-    /// The vertical exaggeration: by default the largest whole number from 1 to 10 with which the relief is at most
-    /// about a seventh of the width.
+    /// The vertical exaggeration.
     fn times(&self, frame: Option<&Frame>) -> f64 {
-        let suiting = |frame: &Frame| {
-            let [low, high, _] = Self::levels(frame);
-            let times = f64::from(0.3 * Self::unit(frame) / (high - low).max(1e-3));
-            times.floor().clamp(1.0, 10.0)
-        };
-        self.exaggeration.or(frame.map(suiting)).unwrap_or(1.0)
+        self.exaggeration.or(frame.map(suiting_times)).unwrap_or(1.0)
     }
 
     /// Metres per unit of the view.
@@ -319,6 +336,14 @@ impl ReliefPanel {
     }
 }
 
+/// The vertical exaggeration that suits a land: the largest whole number from 1 to 10 with which the relief is at most
+/// about a seventh of the width.
+fn suiting_times(frame: &Frame) -> f64 {
+    let [low, high, _] = ReliefPanel::levels(frame);
+    let times = f64::from(0.3 * ReliefPanel::unit(frame) / (high - low).max(1e-3));
+    times.floor().clamp(1.0, 10.0)
+}
+
 /// The switch for contours and, if they are on, a field for their interval; 0 chooses one that suits the land.
 pub fn contours(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
     let own = studio.look.contours;
@@ -339,14 +364,10 @@ pub fn contours(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut 
     }
 }
 
-fn say(painter: &egui::Painter, rect: Rect, text: &str, ui: &Ui) {
-    painter.text(
-        rect.center(),
-        Align2::CENTER_CENTER,
-        text,
-        FontId::proportional(14.0),
-        ui.visuals().weak_text_color(),
-    );
+/// Shows a text in the middle of the view.
+fn say(ui: &mut Ui, rect: Rect, text: &str) {
+    let text = egui::RichText::new(text).size(14.0).weak();
+    ui.put(rect, egui::Label::new(text).selectable(false));
 }
 
 /// The value and the position at the pointer.

@@ -84,8 +84,8 @@ fn card(ui: &mut Ui, name: &str, picture: Option<&TextureHandle>) -> bool {
     response.clicked()
 }
 
-/// Loads a picture into a texture.
-fn load(ui: &Ui, name: &str, bytes: &[u8]) -> Option<TextureHandle> {
+/// Loads a PNG picture into a texture; `None` if it is damaged.
+pub fn load(ui: &Ui, name: &str, bytes: &[u8]) -> Option<TextureHandle> {
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().ok()?;
     let mut data = vec![0; reader.output_buffer_size()?];
     let info = reader.next_frame(&mut data).ok()?;

@@ -41,19 +41,20 @@ impl VariantsPanel {
     /// Shows the panel.
     pub fn show(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
         ui.horizontal(|ui| {
-            ui.label(language.text("variants.of"));
+            let label = ui.label(language.text("variants.of"));
             let selected = studio.selected.first().map(String::as_str);
-            ComboBox::from_id_salt("varied").width(260.0).selected_text(name(&self.varied, language)).show_ui(
-                ui,
-                |ui| {
+            let list = ComboBox::from_id_salt("varied")
+                .width(260.0)
+                .selected_text(name(&self.varied, language))
+                .show_ui(ui, |ui| {
                     for varied in Varied::of(&studio.document, selected) {
                         let label = name(&varied, language);
                         if ui.selectable_label(varied == self.varied, label).clicked() {
                             self.varied = varied;
                         }
                     }
-                },
-            );
+                });
+            list.response.labelled_by(label.id);
             ui.weak(language.text("variants.help"));
         });
         if let Err(error) = self.refresh(studio) {

@@ -43,10 +43,10 @@ pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Languag
             .collect();
         rows::choice(ui, language.text("export.side"), &mut own.side, &sides);
         if own.target.tile.is_some() {
-            ui.label(language.text("export.tiles"));
+            let label = ui.label(language.text("export.tiles"));
             ui.horizontal(|ui| {
                 for (tiles, suffix) in own.tiles.iter_mut().zip([" ×", ""]) {
-                    ui.add(DragValue::new(tiles).range(TILES).speed(0.05).suffix(suffix));
+                    ui.add(DragValue::new(tiles).range(TILES).speed(0.05).suffix(suffix)).labelled_by(label.id);
                 }
             });
             ui.end_row();

@@ -1,0 +1,134 @@
+//! New nodes: what they read, what reads them, and parameters that suit the land.
+
+use orogen::declare::{Input, Spec};
+use orogen::layer::Interpolation;
+use orogen::node::Node;
+use orogen::recipe::Recipe;
+use orogen::value::Value;
+
+use super::drawing;
+use super::edit::Edit;
+
+/// The edit that adds a node after the selected one. If nothing but outputs reads the selected node, and the new one
+/// changes its heights, then the outputs read the new node: what is added at the end is seen. `range` is the range of
+/// the land's heights in metres.
+#[must_use]
+pub fn edit(recipe: &Recipe, name: String, op: &str, selected: Option<&str>, range: Option<[f64; 2]>) -> Edit {
+    let spec = Node::named(op).map(|node| node.spec());
+    let key = spec.and_then(|spec| spec.inputs.first().map(|input| input.name).or(spec.named_inputs.then_some("a")));
+    let Some((selected, key)) = selected.zip(key) else {
+        return Edit::Add { name, op: op.to_owned(), inputs: Vec::new(), params: Vec::new(), outputs: Vec::new() };
+    };
+    let ends = ends_at(recipe, selected);
+    let outputs = if spec.is_some_and(changes_heights) { ends.clone() } else { Vec::new() };
+    let params = range.filter(|_| !ends.is_empty()).map(|range| suiting(op, range)).unwrap_or_default();
+    let params = params.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
+    Edit::Add { name, op: op.to_owned(), inputs: vec![(key.to_owned(), selected.to_owned())], params, outputs }
+}
+
+/// The outputs that read a node, if no node does.
+fn ends_at(recipe: &Recipe, name: &str) -> Vec<String> {
+    let is_it = |input: &Input| matches!(input, Input::Node(read) if read.split('.').next() == Some(name));
+    let is_read = recipe
+        .nodes()
+        .iter()
+        .any(|named| is_it(&named.mask) || (0..named.node.inputs().len()).any(|i| is_it(named.node.input(i))));
+    let outputs = recipe.output_inputs().iter().filter(|(_, input)| !is_read && is_it(input));
+    outputs.map(|(output, _)| output.clone()).collect()
+}
+
+/// Whether an op makes heights from heights, such as an erosion. Masks and measurements, such as slopes, are not land.
+fn changes_heights(spec: &Spec) -> bool {
+    let is_mask = spec.op.starts_with("select-");
+    let is_land = spec.layers.first().is_some_and(|layer| {
+        matches!(layer.name, "height" | "filled") || layer.interpolation == Interpolation::AsSource
+    });
+    is_land && !is_mask && !matches!(spec.op, "height-above-drainage" | "label")
+}
+
+/// Parameters of an op for land in a range of heights: their defaults are for values of about 1, or for mountains.
+fn suiting(op: &str, [low, high]: [f64; 2]) -> Vec<(&'static str, Value)> {
+    let relief = high - low;
+    if !(relief.is_finite() && relief > 0.0) {
+        return Vec::new();
+    }
+    let step = round(relief / 10.0);
+    // Round numbers around the range.
+    let [low, high] = [(low / step).floor() * step, (high / step).ceil() * step];
+    let pair = |a: f64, b: f64| drawing::numbers(&[a, b]);
+    match op {
+        "terrace" => vec![("step", Value::Number(step))],
+        "clamp" => vec![("low", Value::Number(low)), ("high", Value::Number(high))],
+        "select-height" => vec![("range", pair(low + relief / 2.0, high)), ("falloff", pair(step, step))],
+        "remap" => vec![("from", pair(low, high)), ("to", pair(low, high))],
+        "curve" => vec![("points", drawing::value(&[[low, low], [high, high]]))],
+        _ => Vec::new(),
+    }
+}
+
+/// The largest number 1, 2 or 5 times a power of ten that is at most `x`.
+fn round(x: f64) -> f64 {
+    let power = libm::pow(10.0, libm::log10(x).floor());
+    [5.0, 2.0].into_iter().map(|digit| digit * power).find(|number| *number <= x).unwrap_or(power)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editing::document::Document;
+
+    const TEXT: &str = "orogen = 1\n[world]\nsize = 1000\n[nodes.hills]\nop = \"fbm\"\n[nodes.soft]\nop = \"blur\"\nsource = \"hills\"\n\
+        [outputs]\nheight = \"soft\"\nmoisture = \"soft\"\nbase = \"hills\"\n";
+
+    fn text_after(op: &str, selected: Option<&str>, range: Option<[f64; 2]>) -> String {
+        let mut document = Document::new("test", TEXT.into()).unwrap();
+        let edit = edit(document.recipe(), "new".into(), op, selected, range);
+        document.apply(&edit).unwrap();
+        let text = document.text().to_owned();
+        assert!(document.undo() && document.text() == TEXT, "one step of undo");
+        text
+    }
+
+    #[test]
+    fn what_is_added_at_the_end_is_the_terrain() {
+        let range = Some([-12.0, 1890.0]);
+        let text = text_after("terrace", Some("soft"), range);
+        assert!(text.contains("source = \"soft\"\nstep = 100.0"), "{text}");
+        assert!(text.contains("height = \"new\"\nmoisture = \"new\"\nbase = \"hills\""), "{text}");
+        // In the middle it is a branch; masks and measurements are not land.
+        for (op, selected) in
+            [("terrace", "hills"), ("slope", "soft"), ("select-height", "soft"), ("hillshade", "soft")]
+        {
+            let text = text_after(op, Some(selected), range);
+            assert!(text.contains("height = \"soft\"\nmoisture = \"soft\"\nbase = \"hills\""), "{text}");
+        }
+        for op in ["pipes", "thermal", "stream-power", "curve", "clamp", "add", "expr", "blur", "fill", "paint", "mix"]
+        {
+            let text = text_after(op, Some("soft"), range);
+            assert!(text.contains("height = \"new\""), "{op}: {text}");
+        }
+        assert!(!text_after("perlin", Some("soft"), range).contains("\"new\""));
+        assert!(!text_after("terrace", None, None).contains("\"new\""));
+    }
+
+    #[test]
+    fn parameters_suit_the_land() {
+        let range = Some([-12.0, 1890.0]);
+        for (op, expect) in [
+            ("clamp", "low = -100.0\nhigh = 1900.0"),
+            ("select-height", "range = [850.0, 1900.0]\nfalloff = [100.0, 100.0]"),
+            ("remap", "from = [-100.0, 1900.0]\nto = [-100.0, 1900.0]"),
+            ("curve", "points = [[-100.0, -100.0], [1900.0, 1900.0]]"),
+        ] {
+            let text = text_after(op, Some("soft"), range);
+            assert!(text.contains(expect), "{text}");
+        }
+        // Without a picture, or with level land, they have their defaults.
+        for range in [None, Some([3.0, 3.0]), Some([f64::INFINITY, f64::NEG_INFINITY])] {
+            assert!(!text_after("terrace", Some("soft"), range).contains("step"));
+        }
+        for (x, expect) in [(1.0, 1.0), (190.2, 100.0), (0.049, 0.02), (5.0, 5.0), (99.9, 50.0)] {
+            assert!((round(x) - expect).abs() < 1e-12, "{x}");
+        }
+    }
+}

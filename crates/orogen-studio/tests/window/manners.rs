@@ -1,0 +1,206 @@
+//! Keys, menus, and what the window does while nothing happens.
+
+use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Role, ViewportId, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use orogen::io::test_folder::TestFolder;
+use orogen_studio::catalogue::Language;
+use orogen_studio::window::app::App;
+use std::time::Duration;
+
+use super::{click_at, press, studio, until, until_done, window};
+
+#[test]
+fn keys_do_what_other_programs_do() {
+    let folder = TestFolder::new("studio-keys").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    let before = studio(&harness).document.text().to_owned();
+    press(&mut harness, Modifiers::COMMAND, Key::R);
+    let after = studio(&harness).document.text().to_owned();
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(studio(&harness).document.text(), before);
+    press(&mut harness, Modifiers::COMMAND, Key::Y);
+    assert_eq!(studio(&harness).document.text(), after);
+    // In the text, Home goes to the beginning of the line.
+    press(&mut harness, Modifiers::COMMAND, Key::Num4);
+    harness.get_by_role_and_label(Role::TextInput, "recipe").focus();
+    harness.run_steps(2);
+    press(&mut harness, Modifiers::COMMAND, Key::End);
+    harness.get_by_role_and_label(Role::TextInput, "recipe").type_text("# a");
+    harness.run_steps(2);
+    press(&mut harness, Modifiers::NONE, Key::Home);
+    harness.get_by_role_and_label(Role::TextInput, "recipe").type_text("# b ");
+    harness.run_steps(2);
+    assert!(studio(&harness).document.text().ends_with("# b # a"), "{}", studio(&harness).document.text());
+}
+
+#[test]
+fn a_broken_recipe_is_not_being_computed() {
+    let folder = TestFolder::new("studio-not-computing").unwrap();
+    let broken = folder.join("broken.toml");
+    std::fs::write(&broken, "orogen = 1\n[nodes.a]\nop = \"fbm\"\nwavelength = -1\n[outputs]\nheight = \"a\"\n")
+        .unwrap();
+    let mut harness = window(&folder, broken.to_str(), Language::English);
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("No land yet").is_some());
+    assert!(harness.query_by_label_contains("Computing").is_none());
+}
+
+#[test]
+fn a_click_that_closes_a_menu_does_not_paint_and_the_map_stays_in_place() {
+    let folder = TestFolder::new("studio-menu-paint").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until_done(&mut harness);
+    press(&mut harness, Modifiers::COMMAND, Key::Num2);
+    let before = harness.get_by_label("map view").rect();
+    harness.get_by_label("Raise").click();
+    harness.run_steps(3);
+    let map = harness.get_by_label("map view").rect();
+    assert_eq!(map, before, "the settings of a brush need no more room");
+    let text = studio(&harness).document.text().to_owned();
+    harness.get_by_label("Help").click();
+    harness.run_steps(3);
+    assert!(harness.query_by_label("About Orogen").is_some());
+    click_at(&mut harness, map.center());
+    assert!(harness.query_by_label("About Orogen").is_none());
+    assert_eq!(studio(&harness).document.text(), text);
+    click_at(&mut harness, map.center());
+    assert_ne!(studio(&harness).document.text(), text);
+}
+
+#[test]
+fn higher_land_looks_higher() {
+    let folder = TestFolder::new("studio-exaggeration").unwrap();
+    let path = folder.join("a.toml");
+    let text = |height: f64| {
+        format!(
+            "orogen = 1\n[world]\nsize = 5000\ncell = 20\n[nodes.a]\nop = \"fbm\"\nwavelength = 2000\n\
+             [nodes.b]\nop = \"multiply\"\na = \"a\"\nb = {height}\n[outputs]\nheight = \"b\"\n"
+        )
+    };
+    std::fs::write(&path, text(100.0)).unwrap();
+    let mut harness = window(&folder, path.to_str(), Language::English);
+    until_done(&mut harness);
+    harness.run_steps(2);
+    let view = |harness: &Harness<'_, App>| harness.state().shown_view().unwrap().exaggeration;
+    let before = view(&harness);
+    assert!(before > 1.0);
+    press(&mut harness, Modifiers::COMMAND, Key::Num4);
+    for height in [400.0, 30.0] {
+        std::fs::write(&path, text(height)).unwrap();
+        let later = std::time::SystemTime::now() + Duration::from_secs(height as u64);
+        std::fs::File::options().append(true).open(&path).unwrap().set_modified(later).unwrap();
+        let has = format!("b = {height}");
+        until(&mut harness, "the changed file", |app| app.studio().unwrap().document.text().contains(&has));
+        until_done(&mut harness);
+        harness.run_steps(2);
+        assert_eq!(view(&harness), before);
+    }
+}
+
+/// Work for a window that nobody touches: none. What is drawn again and again keeps a processor busy.
+#[test]
+fn an_idle_window_is_not_drawn() {
+    let folder = TestFolder::new("studio-idle").unwrap();
+    let path = folder.join("a.toml");
+    std::fs::write(&path, studio(&window(&folder, Some("classic"), Language::English)).document.text()).unwrap();
+    let mut harness = window(&folder, path.to_str(), Language::English);
+    for view in [Key::Num1, Key::Num2] {
+        press(&mut harness, Modifiers::COMMAND, view);
+        until(&mut harness, "all pictures", |app| {
+            let studio = app.studio().unwrap();
+            studio.is_done() && !studio.thumbnails.is_busy() && studio.thumbnails.of("terrain").is_some()
+        });
+        harness.run_steps(40);
+        let delay = harness.output().viewport_output[&ViewportId::ROOT].repaint_delay;
+        assert!(delay > Duration::from_secs(60), "drawn again after {delay:?}: {:?}", harness.ctx.repaint_causes());
+    }
+}
+
+/// The colors around a position.
+fn around(harness: &mut Harness<'_, App>, at: Pos2) -> Vec<[u8; 4]> {
+    let picture = harness.render().unwrap();
+    let (left, top) = (at.x as u32 - 60, at.y as u32 - 60);
+    (0..120).flat_map(|y| (0..120).map(move |x| (left + x, top + y))).map(|(x, y)| picture.get_pixel(x, y).0).collect()
+}
+
+/// The ring of a brush is where the pointer is, and nowhere else.
+#[test]
+fn the_ring_of_a_brush_goes_with_the_pointer() {
+    let folder = TestFolder::new("studio-ring").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until_done(&mut harness);
+    press(&mut harness, Modifiers::COMMAND, Key::Num2);
+    harness.get_by_label("Raise").click();
+    harness.event(Event::PointerGone);
+    harness.run_steps(4);
+    let map = harness.get_by_label("map view").rect();
+    let at = map.center();
+    let without = around(&mut harness, at);
+    harness.event(Event::PointerMoved(at));
+    harness.run_steps(4);
+    assert_ne!(around(&mut harness, at), without);
+    for leave in [Event::PointerGone, Event::PointerMoved(map.right_center() + vec2(60.0, 0.0))] {
+        harness.event(Event::PointerMoved(at));
+        harness.run_steps(4);
+        harness.event(leave);
+        harness.run_steps(4);
+        assert_eq!(around(&mut harness, at), without);
+    }
+    // Also after a stroke that ends outside.
+    let text = studio(&harness).document.text().to_owned();
+    for (pos, pressed) in [(at, true), (map.right_center() + vec2(60.0, 0.0), false)] {
+        harness.event(Event::PointerMoved(pos));
+        let button = PointerButton::Primary;
+        harness.event(Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE });
+        harness.run_steps(2);
+    }
+    assert_ne!(studio(&harness).document.text(), text);
+}
+
+/// Every field has a name for screen readers: in each panel, each dialog, and for a node of each kind of parameter.
+#[test]
+fn every_field_has_a_name() {
+    let folder = TestFolder::new("studio-names").unwrap();
+    let path = folder.join("a.toml");
+    let recipe = "orogen = 1\n[parameters]\nrelief = { default = 300, range = [1, 1000] }\n[world]\nsize = 2000\ncell = 20\n\
+        [nodes.a]\nop = \"fbm\"\n[nodes.b]\nop = \"curve\"\nsource = \"a\"\n[nodes.c]\nop = \"select-height\"\nsource = \"b\"\n\
+        [nodes.d]\nop = \"mix\"\na = \"b\"\nb = 5\namount = \"c\"\n[nodes.e]\nop = \"expr\"\nexpr = \"d * relief\"\n[nodes.f]\nop = \"fill\"\nsource = \"e\"\n\
+        [outputs]\nheight = \"f\"\n";
+    std::fs::write(&path, recipe).unwrap();
+    let mut harness = window(&folder, path.to_str(), Language::English);
+    assert!(studio(&harness).document.is_valid(), "{:?}", studio(&harness).document.diagnostics());
+    until_done(&mut harness);
+    for key in [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num3] {
+        press(&mut harness, Modifiers::COMMAND, key);
+        harness.check_accessibility();
+    }
+    for node in ["a", "b", "c", "d", "e", "f"] {
+        harness.get_by_label(&format!("node {node}")).click();
+        harness.run_steps(3);
+        assert_eq!(studio(&harness).selected, [node]);
+        harness.check_accessibility();
+    }
+    for tool in ["Contours", "Raise", "Paint", "Compare"] {
+        harness.get_by_label(tool).click();
+        harness.run_steps(3);
+        harness.check_accessibility();
+    }
+    for dialog in [Key::O, Key::E, Key::S] {
+        press(
+            &mut harness,
+            Modifiers::COMMAND.plus(if dialog == Key::S { Modifiers::SHIFT } else { Modifiers::NONE }),
+            dialog,
+        );
+        harness.check_accessibility();
+        for kind in ["Game engine", "Map sheet", "Render", "Tilemap"].into_iter().filter(|_| dialog == Key::E) {
+            harness.get_by_label(kind).click();
+            harness.run_steps(3);
+            harness.check_accessibility();
+        }
+        press(&mut harness, Modifiers::NONE, Key::Escape);
+    }
+    harness.get_by_label("Edit colors").click();
+    harness.run_steps(3);
+    harness.check_accessibility();
+}
