@@ -1,5 +1,6 @@
 //! The appearance of a box of the graph, and the positions of its inputs and outputs.
 
+use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
     Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, StrokeKind, TextureHandle, Vec2, Visuals, pos2, vec2,
 };
@@ -133,7 +134,11 @@ fn words(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, sho
     let small = FontId::proportional(10.5 * zoom);
     let (name, below) = ((7.0, 4.0), (7.0, 19.0));
     let write = |(x, y): (f32, f32), text: &str, font: FontId, color: Color32| {
-        inside.text(rect.min + vec2(x, y) * zoom, Align2::LEFT_TOP, text, font, color);
+        let mut job = LayoutJob::simple_singleline(text.to_owned(), font, color);
+        // The end of a long name is left out, where it can be seen that it is.
+        job.wrap = TextWrapping::truncate_at_width((WIDTH - 2.0 * x) * zoom);
+        let galley = inside.fonts_mut(|fonts| fonts.layout_job(job));
+        inside.galley(rect.min + vec2(x, y) * zoom, galley, color);
     };
     write(name, &block.title, FontId::proportional(13.0 * zoom), Color32::WHITE);
     let count = block.nodes.len().to_string();

@@ -46,10 +46,15 @@ pub struct Graph {
     /// The small pictures of nodes on the graphics card.
     textures: HashMap<String, (Arc<Picture>, TextureHandle)>,
     pub(super) wants_whole: bool,
+    /// The size of the panel for which the whole graph is shown, until the user moves it.
+    fitted: Option<Vec2>,
 }
 
-/// The scale from which names are readable.
-const LEGIBLE: f32 = 0.62;
+/// The height of the row with the path of groups and the button, which cover no box of a graph that is shown whole.
+const ROW: f32 = 32.0;
+
+/// The smallest scale at which the user can show a graph, unless the whole graph needs a smaller one.
+const SMALLEST: f32 = 0.15;
 
 impl Default for Graph {
     fn default() -> Graph {
@@ -65,6 +70,7 @@ impl Default for Graph {
             rectangle: None,
             textures: HashMap::new(),
             wants_whole: true,
+            fitted: None,
         }
     }
 }
@@ -97,8 +103,11 @@ impl Graph {
         self.update(studio);
         self.load(ui, studio);
         let (rect, background) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        if std::mem::take(&mut self.wants_whole) {
+        background.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "graph"));
+        let is_resized = self.fitted.is_some_and(|size| size != rect.size());
+        if std::mem::take(&mut self.wants_whole) || is_resized {
             self.fit(studio, rect.size());
+            self.fitted = Some(rect.size());
         }
         let origin = rect.min;
         self.navigate(ui, &background, origin);
@@ -210,19 +219,16 @@ impl Graph {
             }
         }
         if bounds.is_finite() && bounds.width() > 0.0 {
-            let room = (size - Vec2::splat(32.0)).max(Vec2::splat(40.0));
-            self.zoom = (room.x / bounds.width()).min(room.y / bounds.height()).clamp(LEGIBLE, 1.0);
-            self.offset = size / 2.0 - bounds.center().to_vec2() * self.zoom;
-            // If the graph does not fit, its end is shown, which is what the outputs read.
-            if bounds.width() * self.zoom > room.x {
-                self.offset.x = size.x - 16.0 - bounds.right() * self.zoom;
-            }
+            let room = (size - vec2(32.0, ROW + 16.0)).max(Vec2::splat(40.0));
+            self.zoom = (room.x / bounds.width()).min(room.y / bounds.height()).min(1.0);
+            self.offset = (size + vec2(0.0, ROW)) / 2.0 - bounds.center().to_vec2() * self.zoom;
         }
     }
 
     fn navigate(&mut self, ui: &Ui, background: &Response, origin: Pos2) {
         if background.dragged_by(PointerButton::Middle) || background.dragged_by(PointerButton::Secondary) {
             self.offset += background.drag_delta();
+            self.fitted = None;
         }
         if background.contains_pointer()
             && let Some(pointer) = ui.input(|input| input.pointer.hover_pos())
@@ -231,9 +237,10 @@ impl Graph {
             let factor = pinch * libm::expf(scroll * 0.003);
             if (factor - 1.0).abs() > 1e-4 {
                 let fixed = pointer - origin;
-                let zoom = (self.zoom * factor).clamp(0.15, 2.5);
+                let zoom = (self.zoom * factor).clamp(SMALLEST.min(self.zoom), 2.5);
                 self.offset = fixed - (fixed - self.offset) * (zoom / self.zoom);
                 self.zoom = zoom;
+                self.fitted = None;
             }
         }
     }
@@ -305,6 +312,7 @@ impl Graph {
         let is_own = !matches!(block.kind, Kind::Outside | Kind::Output);
         let is_selected = is_own && block.nodes.iter().all(|name| studio.selected.contains(name));
         if response.dragged_by(PointerButton::Primary) {
+            self.fitted = None;
             let moved = |other: &&GraphBox| {
                 other.id == block.id
                     || is_selected
@@ -318,6 +326,8 @@ impl Graph {
             }
         }
         self.click(ui, &response, block, is_selected, studio, actions);
+        // Names that are too long or too small for the box.
+        let response = response.on_hover_text(&block.title);
         if is_own {
             response.context_menu(|ui| self.menu(ui, block, studio, language, actions));
         }

@@ -67,7 +67,7 @@ impl Graph {
         // Boxes that existed before keep their positions; others get a free one.
         for is_first in [true, false] {
             for (at, place) in found.iter().enumerate() {
-                let keeps = is_old.get(at) == Some(&true) && place.is_some();
+                let keeps = is_old.get(at) == Some(&true) && place.is_some() && !self.is_behind(at, &found);
                 let Some(block) = self.scene.boxes.get(at).filter(|_| keeps == is_first) else { continue };
                 let size: [f32; 2] = graph_box::size(block, has_pictures).into();
                 let wanted: [f32; 2] = place.unwrap_or_else(|| self.wanted(at)).into();
@@ -95,6 +95,14 @@ impl Graph {
             }
             _ => None,
         }
+    }
+
+    /// Whether a box is an output that has to make way: what it reads is new, or is not to its left.
+    fn is_behind(&self, at: usize, places: &[Option<Pos2>]) -> bool {
+        let place = |at: usize| places.get(at).copied().flatten();
+        let is_output = self.scene.boxes.get(at).is_some_and(|block| block.kind == Kind::Output);
+        let mut sources = self.scene.wires.iter().filter(|wire| wire.to == at).map(|wire| place(wire.from));
+        is_output && sources.any(|source| source.zip(place(at)).is_none_or(|(source, own)| source.x + WIDTH > own.x))
     }
 
     /// The wanted position of a new box: next to the boxes that it reads, or in the visible part.

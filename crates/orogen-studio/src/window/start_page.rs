@@ -85,6 +85,7 @@ fn card(ui: &mut Ui, name: &str, picture: Option<&TextureHandle>) -> bool {
 }
 
 /// Loads a PNG picture into a texture; `None` if it is damaged.
+#[must_use]
 pub fn load(ui: &Ui, name: &str, bytes: &[u8]) -> Option<TextureHandle> {
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().ok()?;
     let mut data = vec![0; reader.output_buffer_size()?];

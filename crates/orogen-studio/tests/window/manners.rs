@@ -204,3 +204,36 @@ fn every_field_has_a_name() {
     harness.run_steps(3);
     harness.check_accessibility();
 }
+
+/// The whole graph is shown, however large it is, and nothing covers its boxes.
+#[test]
+fn the_whole_graph_is_in_its_panel() {
+    let folder = TestFolder::new("studio-whole-graph").unwrap();
+    let path = folder.join("a.toml");
+    for count in [3, 40, 400] {
+        let mut text = String::from("orogen = 1\n[world]\nsize = 1000\ncell = 10\n[nodes.n0]\nop = \"fbm\"\n");
+        for n in 1..count {
+            // A chain with branches.
+            text.push_str(&format!("[nodes.n{n}]\nop = \"add\"\na = \"n{}\"\nb = \"n{}\"\n", n - 1, n / 2));
+        }
+        text.push_str(&format!("[outputs]\nheight = \"n{}\"\n", count - 1));
+        std::fs::write(&path, text).unwrap();
+        let mut harness = window(&folder, path.to_str(), Language::English);
+        for size in [[1280.0, 800.0], [700.0, 500.0]] {
+            harness.set_size(size.into());
+            harness.run_steps(4);
+            let panel = harness.get_by_label("graph").rect();
+            let tidy = harness.get_by_label("Tidy").rect();
+            let boxes = harness.query_all_by_label_contains("node n").map(|node| node.rect()).collect::<Vec<_>>();
+            assert_eq!(boxes.len(), count);
+            // What is outside of the panel is cut off.
+            let widest = boxes.iter().map(|own| own.width()).fold(0.0, f32::max);
+            let is_whole = boxes.iter().all(|own| own.width() > 0.9 * widest);
+            assert!(widest > 0.1 && is_whole, "{count} at {size:?}: {panel:?} {boxes:?}");
+            for own in boxes {
+                assert!(panel.expand(1.0).contains_rect(own), "{count}: {own:?} in {panel:?}");
+                assert!(!tidy.intersects(own), "{count}: {own:?}");
+            }
+        }
+    }
+}
