@@ -138,9 +138,9 @@ pub fn check() -> Result {
     }
 }
 
-/// A line in lower case, without names of other programs.
+/// A line in lower case, without names of other programs and libraries.
 fn text_of(line: &str) -> String {
-    line.replace("MonoBehaviour", "").to_lowercase()
+    line.replace("MonoBehaviour", "").replace("labelled_by(", "").to_lowercase()
 }
 
 fn faults(line: &str) -> Vec<String> {

@@ -52,6 +52,9 @@ fn a_new_recipe_is_the_preset_and_never_overwrites() {
     folder.good(&["new", "other.toml", "--preset", "mesa"]);
     folder.good(&["new", "v1.2"]);
     assert_eq!(folder.names(""), ["a", "b", "mine.toml", "other.toml", "v1.2.toml"]);
+    // The printed command can be pasted.
+    let outcome = folder.good(&["new", "it's a land"]);
+    assert!(outcome.text().contains("orogen generate 'it'\\''s a land.toml'\n"), "{}", outcome.text());
     folder.bad(&["new", "x", "--preset", "messa"], 2, "did you mean `mesa`?");
     folder.bad(&["new", ".."], 2, "not a file name");
     folder.bad(&["new", "none/x"], 1, "cannot write into none");
