@@ -1,7 +1,6 @@
 //! Area `studio`: from a change of a parameter to the pictures of the studio, without the drawing of the window. Wall
 //! time of all cores.
 
-use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -80,7 +79,7 @@ fn interface() -> Result<Value, String> {
         large.push_str(&format!("\n[nodes.n{n}]\nop = \"add\"\na = \"n{}\"\nb = 0.5\n", n - 1));
     }
     large.push_str(&format!("\n[outputs]\nheight = \"n{}\"\n", NODES - 1));
-    let large = Document::recovered(Path::new("large.toml"), large);
+    let large = Document::unsaved("large", large, None);
     if !large.is_valid() {
         return Err(format!("the large recipe is not valid: {:?}", large.diagnostics()));
     }
