@@ -1,5 +1,6 @@
 """Opens the window of the studio on a display without a screen, in both languages, and looks at its picture."""
 
+import json
 import os
 import subprocess
 import time
@@ -26,11 +27,12 @@ def display():
         return f":{pipe.readline().strip()}", server
 
 
-def look(name, language, arguments, seconds):
+def look(name, language, arguments, seconds, recent=()):
     """Opens the window until its picture is there; returns the picture."""
     settings = WORK / name / "orogen"
     settings.mkdir(parents=True, exist_ok=True)
-    (settings / "studio.json").write_text(f'{{"language": "{language}", "theme": "dark", "window": [{SIZE[0]}, {SIZE[1]}]}}')
+    remembered = {"language": language, "theme": "dark", "window": SIZE, "recent": recent}
+    (settings / "studio.json").write_text(json.dumps(remembered))
     screen, server = display()
     environment = {**os.environ, "DISPLAY": screen, "XDG_CONFIG_HOME": str(WORK / name), "XDG_RUNTIME_DIR": str(WORK)}
     environment.pop("WAYLAND_DISPLAY", None)
@@ -65,6 +67,9 @@ bar = numpy.abs(english[:24].astype(int) - chinese[:24]).max()
 checks.that("the menus are in two languages", bar > 60)
 start = look("start", "en", [], 300)
 checks.that("the start page has pictures", len(numpy.unique(start.reshape(-1, 3), axis=0)) > 5000)
+# Letters that no font has are drawn as boxes; Chinese names of files are letters, also in the English interface.
+names = [look(f"name-{n}", "en", [], 300, [f"/lands/{name}.toml"]) for n, name in enumerate(("山水", "\ue000\ue000"))]
+checks.that("Chinese names are letters, not boxes", (names[0][100:150, :400] != names[1][100:150, :400]).any())
 
 # A lost graphics device: the text that was not saved is in the window of the next run, in the same process.
 settings = WORK / "loss" / "orogen"

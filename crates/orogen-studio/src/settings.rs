@@ -41,6 +41,10 @@ pub struct Settings {
     pub memory: u64,
     /// Whether nodes of the graph show small pictures.
     pub thumbnails: bool,
+    /// Whether the panel below the view is shown.
+    pub has_below: bool,
+    /// Whether the parameters of the selected node are shown.
+    pub has_inspector: bool,
 }
 
 /// The default of [`Settings::memory`].
@@ -56,6 +60,8 @@ impl Default for Settings {
             scale: 1.0,
             memory: MEMORY,
             thumbnails: true,
+            has_below: true,
+            has_inspector: true,
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use eframe::egui::{self, Context, Key, KeyboardShortcut, Panel, Ui};
+use eframe::egui::{self, Context, Panel, Ui};
 use orogen::gpu::Gpu;
 use orogen::{Budget, Options, Result, Session};
 
@@ -175,7 +175,10 @@ impl App {
     }
 
     fn use_language(&mut self, context: &Context) {
-        if self.language == Language::Chinese && fonts::add_chinese(context).is_none() {
+        if self.language != Language::Chinese {
+            // Without a thread, Chinese names are shown as boxes.
+            let _ = fonts::add_chinese_later(context);
+        } else if !fonts::add_chinese(context) {
             // Without the font, all characters would be shown as boxes.
             self.language = Language::English;
             self.dialogs.message = Some((self.text("font.title").into(), self.text("font.missing").into()));
@@ -197,7 +200,7 @@ impl App {
         }
         if !document.is_valid() {
             // This panel shows the errors of the text.
-            self.panels.below = Below::Text;
+            self.show_below(Below::Text);
         }
         match &mut self.studio {
             Some(studio) => studio.open(document),
@@ -305,7 +308,7 @@ impl App {
                 self.panels.map.take_brush(effect);
             }
             Action::Enter(group) => {
-                self.panels.below = Below::Graph;
+                self.show_below(Below::Graph);
                 self.panels.graph.enter(&group);
             }
             Action::Copy(text) => context.copy_text(text),
@@ -320,7 +323,7 @@ impl App {
                 self.dialogs.files = Some(FileDialog::new(purpose, name.as_deref()));
             }
             Action::GoToLine(line) => {
-                self.panels.below = Below::Text;
+                self.show_below(Below::Text);
                 self.panels.text.go_to(line);
             }
             other => {
@@ -402,13 +405,26 @@ impl App {
             }
             Command::ShowRelief => self.panels.view = View::Relief,
             Command::ShowMap => self.panels.view = View::Map,
-            Command::ShowGraph => self.panels.below = Below::Graph,
-            Command::ShowText => self.panels.below = Below::Text,
-            Command::ShowAnalysis => self.panels.below = Below::Analysis,
-            Command::ShowReal => self.panels.below = Below::Real,
-            Command::ShowVariants => self.panels.below = Below::Variants,
+            Command::ShowGraph => self.show_below(Below::Graph),
+            Command::ShowText => self.show_below(Below::Text),
+            Command::ShowAnalysis => self.show_below(Below::Analysis),
+            Command::ShowReal => self.show_below(Below::Real),
+            Command::ShowVariants => self.show_below(Below::Variants),
             Command::WholeView => {
                 self.panels.show_whole();
+            }
+            Command::PanelBelow => {
+                self.settings.has_below = !self.settings.has_below;
+                self.remember();
+            }
+            Command::Inspector => {
+                self.settings.has_inspector = !self.settings.has_inspector;
+                self.remember();
+            }
+            Command::ViewAlone => {
+                let is_alone = !self.settings.has_below && !self.settings.has_inspector;
+                (self.settings.has_below, self.settings.has_inspector) = (is_alone, is_alone);
+                self.remember();
             }
             Command::Thumbnails => {
                 self.settings.thumbnails = !self.settings.thumbnails;
@@ -442,12 +458,13 @@ impl App {
                 self.say_failure(edited);
             }
             Command::AddNode => {
-                self.panels.below = Below::Graph;
+                self.show_below(Below::Graph);
                 self.panels.graph.open_search();
             }
             Command::Rename => {
                 let group = groups::of_selection(studio.document.recipe(), &selected);
                 if let Some(name) = group.as_ref().or(selected.first()) {
+                    self.settings.has_inspector = true;
                     self.panels.inspector.rename(name);
                 }
             }
@@ -469,27 +486,16 @@ impl App {
         }
     }
 
+    /// Shows a panel below the view.
+    fn show_below(&mut self, below: Below) {
+        self.panels.below = below;
+        self.settings.has_below = true;
+    }
+
     fn save_as(&mut self) {
         let Some(studio) = &self.studio else { return };
         let name = PathBuf::from(format!("{}.toml", studio.document.title()));
         self.dialogs.files = Some(FileDialog::new(Purpose::Save, studio.document.path().or(Some(&name))));
-    }
-
-    /// Adds the actions of keyboard shortcuts.
-    fn keys(context: &Context, actions: &mut Vec<Action>) {
-        // Text fields need keys such as Home.
-        let is_typing = context.egui_wants_keyboard_input();
-        let is_free =
-            |keys: &KeyboardShortcut| !(is_typing && keys.modifiers.is_none() && keys.logical_key == Key::Home);
-        let entries = command::ALL.iter().flat_map(|entry| entry.shortcuts().map(move |keys| (entry.command, keys)));
-        let mut entries: Vec<(Command, KeyboardShortcut)> = entries.filter(|(_, keys)| is_free(keys)).collect();
-        // Longer combinations first, so that Ctrl+Shift+Z does not trigger Ctrl+Z.
-        entries.sort_by_key(|(_, keys)| !keys.modifiers.shift);
-        for (command, keys) in entries {
-            if context.input_mut(|input| input.consume_shortcut(&keys)) {
-                actions.push(Action::Command(command));
-            }
-        }
     }
 
     /// Opens files that are dropped onto the window.
@@ -568,7 +574,7 @@ impl eframe::App for App {
             studio.poll();
             studio.watch();
         }
-        Self::keys(&context, &mut actions);
+        actions.extend(command::pressed(&context).into_iter().map(Action::Command));
         Self::dropped(&context, &mut actions);
         Panel::top("menu")
             .show(ui, |ui| menu::show(ui, self.studio.as_ref(), &self.settings, self.language, &mut actions));

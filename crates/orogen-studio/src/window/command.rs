@@ -1,6 +1,6 @@
 //! The commands of the menus, the command palette and the keyboard. Each is declared here once.
 
-use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 /// A command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -29,6 +29,9 @@ pub enum Command {
     ShowVariants,
     ShowReal,
     WholeView,
+    PanelBelow,
+    Inspector,
+    ViewAlone,
     Thumbnails,
     CommandPalette,
     Shortcuts,
@@ -108,7 +111,7 @@ const CTRL: Modifiers = Modifiers::COMMAND;
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// All commands, in the order of their menus.
-pub static ALL: [Entry; 27] = [
+pub static ALL: [Entry; 30] = [
     with_keys(Command::New, "command.new", Menu::File, false, CTRL, Key::N),
     with_keys(Command::Open, "command.open", Menu::File, false, CTRL, Key::O),
     with_keys(Command::Save, "command.save", Menu::File, true, CTRL, Key::S),
@@ -132,6 +135,9 @@ pub static ALL: [Entry; 27] = [
     with_keys(Command::ShowVariants, "command.show_variants", Menu::View, true, CTRL, Key::Num6),
     with_keys(Command::ShowReal, "command.show_real", Menu::View, true, CTRL, Key::Num7),
     with_keys(Command::WholeView, "command.whole_view", Menu::View, true, Modifiers::NONE, Key::Home),
+    with_keys(Command::PanelBelow, "command.panel_below", Menu::View, true, Modifiers::NONE, Key::F6),
+    with_keys(Command::Inspector, "command.inspector", Menu::View, true, Modifiers::NONE, Key::F7),
+    with_keys(Command::ViewAlone, "command.view_alone", Menu::View, true, Modifiers::NONE, Key::F11),
     entry(Command::Thumbnails, "command.thumbnails", Menu::View, true),
     with_keys(Command::CommandPalette, "command.command_palette", Menu::Help, false, CTRL_SHIFT, Key::P),
     with_keys(Command::Shortcuts, "command.shortcuts", Menu::Help, false, Modifiers::NONE, Key::F1),
@@ -144,6 +150,20 @@ impl Command {
     pub fn entry(self) -> Option<&'static Entry> {
         ALL.iter().find(|entry| entry.command == self)
     }
+}
+
+/// The commands whose keyboard shortcuts were pressed.
+#[must_use]
+pub fn pressed(context: &Context) -> Vec<Command> {
+    // Text fields need keys such as Home.
+    let is_typing = context.egui_wants_keyboard_input();
+    let is_free = |keys: &KeyboardShortcut| !(is_typing && keys.modifiers.is_none() && keys.logical_key == Key::Home);
+    let entries = ALL.iter().flat_map(|entry| entry.shortcuts().map(move |keys| (entry.command, keys)));
+    let mut entries: Vec<(Command, KeyboardShortcut)> = entries.filter(|(_, keys)| is_free(keys)).collect();
+    // Longer combinations first, so that Ctrl+Shift+Z does not trigger Ctrl+Z.
+    entries.sort_by_key(|(_, keys)| !keys.modifiers.shift);
+    let is_pressed = |keys: &KeyboardShortcut| context.input_mut(|input| input.consume_shortcut(keys));
+    entries.into_iter().filter(|(_, keys)| is_pressed(keys)).map(|(command, _)| command).collect()
 }
 
 #[cfg(test)]

@@ -1,9 +1,19 @@
 //! The search for a new node of the graph.
 
-use eframe::egui::{self, Key, Pos2, Rect, TextEdit, Ui, vec2};
+use std::cmp::Reverse;
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
+use eframe::egui::text::{LayoutJob, TextFormat};
+use eframe::egui::{self, FontId, Key, Pos2, Rect, TextEdit, Ui, vec2};
 use orogen::node::Node;
+use orogen::presets;
 
 use crate::catalogue::Language;
+
+/// The width of the list, and the number of letters of a description on one of its lines.
+const WIDTH: f32 = 380.0;
+const LETTERS: usize = 62;
 
 /// A search, and the position of the new node.
 #[derive(Debug, Default)]
@@ -36,14 +46,16 @@ impl Search {
     pub fn show(&mut self, ui: &Ui, rect: Rect, place: Pos2, language: Language) -> Found {
         let mut chosen = Found::Nothing;
         let mut is_open = true;
-        let place = place.clamp(rect.min, (rect.max - vec2(260.0, 120.0)).max(rect.min));
+        let place = place.clamp(rect.min, (rect.max - vec2(WIDTH + 10.0, 120.0)).max(rect.min));
         egui::Window::new(language.text("graph.add"))
             .open(&mut is_open)
             .fixed_pos(place)
-            .fixed_size(vec2(250.0, 260.0))
+            .fixed_size(vec2(WIDTH, 300.0))
             .collapsible(false)
             .show(ui.ctx(), |ui| {
-                let field = ui.add(TextEdit::singleline(&mut self.text).hint_text(language.text("graph.search")));
+                let field = ui.add(
+                    TextEdit::singleline(&mut self.text).desired_width(WIDTH).hint_text(language.text("graph.search")),
+                );
                 if std::mem::take(&mut self.is_new) {
                     field.request_focus();
                 }
@@ -54,11 +66,13 @@ impl Search {
                 {
                     chosen = Found::Op(first);
                 }
-                egui::ScrollArea::vertical().max_height(220.0).show(ui, |ui| {
+                egui::ScrollArea::vertical().max_height(260.0).auto_shrink([false, true]).show(ui, |ui| {
                     for op in found {
                         let Some(node) = Node::named(op) else { continue };
                         let about = orogen::declare::short(node.spec().doc);
-                        if ui.selectable_label(false, op).on_hover_text(about).clicked() {
+                        let entry = ui.selectable_label(false, entry(ui, op, &about));
+                        entry.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, op));
+                        if entry.on_hover_text(about).clicked() {
                             chosen = Found::Op(op);
                         }
                     }
@@ -69,28 +83,60 @@ impl Search {
     }
 }
 
-/// The ops whose name or description contains all words of a text. Ops whose name begins with the text come first.
+/// The text of an entry: the name of the op, and its description on one line.
+fn entry(ui: &Ui, op: &str, about: &str) -> LayoutJob {
+    let format = |size: f32, color| TextFormat::simple(FontId::proportional(size), color);
+    let mut job = LayoutJob::default();
+    job.append(op, 0.0, format(13.5, ui.visuals().strong_text_color()));
+    job.append("\n", 0.0, format(11.0, ui.visuals().weak_text_color()));
+    let short = match about.char_indices().nth(LETTERS) {
+        Some((end, _)) => format!("{} …", about[..end].trim_end()),
+        None => about.to_owned(),
+    };
+    job.append(&short, 0.0, format(11.0, ui.visuals().weak_text_color()));
+    job
+}
+
+/// How often presets use an op.
+fn uses(op: &str) -> usize {
+    static USES: LazyLock<HashMap<String, usize>> = LazyLock::new(|| {
+        let mut uses = HashMap::new();
+        let lines = presets::all().iter().flat_map(|preset| preset.text.lines());
+        for op in lines.filter_map(|line| line.strip_prefix("op = \"")?.split('"').next()) {
+            *uses.entry(op.to_owned()).or_default() += 1;
+        }
+        uses
+    });
+    USES.get(op).copied().unwrap_or_default()
+}
+
+/// The ops whose name or description contains all words of a text. Ops come first whose name begins with the text, then
+/// those with a word of the name or the short description that does, then others; among these, the ones that presets
+/// use most.
 #[must_use]
 pub fn matches(text: &str) -> Vec<&'static str> {
     let text = text.trim().to_lowercase();
-    let mut found: Vec<(u8, &'static str)> = Node::all()
+    let begins = |words: &str| words.split(|c: char| !c.is_alphanumeric()).any(|word| word.starts_with(&text));
+    let mut found: Vec<(u8, Reverse<usize>, &'static str)> = Node::all()
         .iter()
         .map(Node::spec)
         // Inputs of subgraphs are written by recipes that use them.
         .filter(|spec| spec.op != "input")
         .filter_map(|spec| {
             let about = spec.doc.to_lowercase();
+            let short = orogen::declare::short(spec.doc).to_lowercase();
             let rank = match () {
-                () if spec.op.starts_with(&text) => 0,
-                () if spec.op.contains(&text) => 1,
-                () if text.split_whitespace().all(|word| spec.op.contains(word) || about.contains(word)) => 2,
+                () if text.is_empty() || spec.op.starts_with(&text) => 0,
+                () if begins(spec.op) || begins(&short) => 1,
+                () if spec.op.contains(&text) => 2,
+                () if text.split_whitespace().all(|word| spec.op.contains(word) || about.contains(word)) => 3,
                 () => return None,
             };
-            Some((rank, spec.op))
+            Some((rank, Reverse(uses(spec.op)), spec.op))
         })
         .collect();
     found.sort_unstable();
-    found.into_iter().map(|(_, op)| op).collect()
+    found.into_iter().map(|(.., op)| op).collect()
 }
 
 #[cfg(test)]
@@ -101,7 +147,12 @@ mod tests {
     fn nodes_are_found_by_name_and_description() {
         assert_eq!(matches("blur")[0], "blur");
         assert_eq!(matches("fb")[0], "fbm");
-        assert!(matches("hydraulic").contains(&"pipes") || matches("erosion").contains(&"stream-power"));
+        assert!(matches("hydraulic").contains(&"pipes") && matches("erosion").contains(&"stream-power"));
+        // Sense before letters: `hetero` contains these, too.
+        let erosion = matches("ero");
+        let at = |op: &str| erosion.iter().position(|found| *found == op).unwrap();
+        assert!(at("stream-power") == 0 && at("pipes") < at("hetero") && at("droplets") < at("hetero"));
+        assert_eq!(matches("")[0], "fbm", "what is used most");
         assert!(matches("no such thing").is_empty());
         assert_eq!(matches("").len() + 1, Node::all().len());
     }

@@ -10,9 +10,9 @@ use eframe::egui::{
 use super::action::Action;
 use super::contour_lines::ContourLines;
 use super::label::label;
-use super::legend;
 use super::map_brush::{self, MapBrush};
 use super::relief_panel::{contours, readout};
+use super::{legend, tool_row};
 use crate::catalogue::Language;
 use crate::editing::brush::Effect;
 use crate::editing::edit::Edit;
@@ -189,7 +189,7 @@ impl MapPanel {
 
     /// The choice of the tool, and the comparison.
     fn tools(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
-        ui.horizontal_wrapped(|ui| {
+        tool_row::show(ui, |ui| {
             let brushes = Effect::ALL.map(|effect| (Tool::Brush(effect), map_brush::names(effect)[0]));
             let tools = [
                 (Tool::Pan, "map.pan"),

@@ -17,7 +17,7 @@ pub fn show(ui: &mut Ui, studio: Option<&Studio>, settings: &Settings, language:
             ui.menu_button(language.text(menu.name()), |ui| {
                 for entry in command::ALL.iter().filter(|entry| entry.menu == menu) {
                     let keys = entry.keys.map(|keys| ui.ctx().format_shortcut(&keys)).unwrap_or_default();
-                    let mark = entry.command == Command::Thumbnails && settings.thumbnails;
+                    let mark = is_marked(entry.command, settings);
                     let mut button = egui::Button::selectable(mark, label(entry.command, studio, language));
                     if !keys.is_empty() {
                         button = button.shortcut_text(keys);
@@ -63,6 +63,17 @@ fn label(command: Command, studio: Option<&Studio>, language: Language) -> Strin
     match what {
         Some(what) => format!("{name}: {}", language.text(what)),
         None => name.to_owned(),
+    }
+}
+
+/// Whether the state that a command switches is on.
+fn is_marked(command: Command, settings: &Settings) -> bool {
+    match command {
+        Command::PanelBelow => settings.has_below,
+        Command::Inspector => settings.has_inspector,
+        Command::ViewAlone => !settings.has_below && !settings.has_inspector,
+        Command::Thumbnails => settings.thumbnails,
+        _ => false,
     }
 }
 

@@ -41,4 +41,5 @@ pub mod start_page;
 pub mod status;
 pub mod text_panel;
 pub mod theme;
+pub mod tool_row;
 pub mod variants_panel;

@@ -80,6 +80,9 @@ pub struct Shown<'a> {
     pub language: Language,
 }
 
+/// The least height of the view with its tools.
+const VIEW: f32 = 160.0;
+
 impl Panels {
     /// The panels with the 3D view above the graph.
     #[must_use]
@@ -120,47 +123,17 @@ impl Panels {
             return;
         };
         Panel::bottom("status").show(ui, |ui| status::show(ui, studio, gpu, language));
-        Panel::right("inspector").default_size(300.0).size_range(220.0..=520.0).show(ui, |ui| {
-            egui::ScrollArea::vertical()
-                .auto_shrink(false)
-                .show(ui, |ui| self.inspector.show(ui, studio, language, actions));
-        });
-        let available = ui.available_height();
-        Panel::bottom("below").resizable(true).default_size(available * 0.36).size_range(60.0..=available * 0.8).show(
-            ui,
-            |ui| {
-                ui.horizontal(|ui| {
-                    for (below, name) in [
-                        (Below::Graph, "below.graph"),
-                        (Below::Text, "below.text"),
-                        (Below::Analysis, "below.analysis"),
-                        (Below::Real, "below.real"),
-                        (Below::Variants, "below.variants"),
-                    ] {
-                        let label = match below == Below::Text && !studio.document.is_valid() {
-                            // Red on the color of the selection would not be readable.
-                            true if self.below == below => RichText::new(format!("! {}", language.text(name))),
-                            true => {
-                                RichText::new(format!("! {}", language.text(name))).color(ui.visuals().error_fg_color)
-                            }
-                            false => RichText::new(language.text(name)),
-                        };
-                        if ui.selectable_label(self.below == below, label).clicked() {
-                            self.below = below;
-                        }
-                    }
-                });
-                // A panel with little content keeps its size.
-                ui.set_min_size(ui.available_size());
-                match self.below {
-                    Below::Graph => self.graph.show(ui, studio, language, actions),
-                    Below::Text => self.text.show(ui, studio, language, actions),
-                    Below::Analysis => analysis_panel::show(ui, studio, language),
-                    Below::Real => self.real.show(ui, studio, language),
-                    Below::Variants => self.variants.show(ui, studio, language, actions),
-                }
-            },
-        );
+        if settings.has_inspector {
+            let most = (ui.available_width() * 0.6).clamp(220.0, 520.0);
+            Panel::right("inspector").default_size(300.0).size_range(220.0..=most).show(ui, |ui| {
+                egui::ScrollArea::vertical()
+                    .auto_shrink(false)
+                    .show(ui, |ui| self.inspector.show(ui, studio, language, actions));
+            });
+        }
+        if settings.has_below {
+            self.show_below(ui, studio, language, actions);
+        }
         CentralPanel::default().show(ui, |ui| {
             ui.horizontal(|ui| {
                 for (view, name) in [(View::Relief, "view.relief"), (View::Map, "view.map")] {
@@ -172,6 +145,42 @@ impl Panels {
             match self.view {
                 View::Relief => self.relief.show(ui, studio, ability, language, actions),
                 View::Map => self.map.show(ui, studio, language, actions),
+            }
+        });
+    }
+
+    fn show_below(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+        let available = ui.available_height();
+        // The view keeps some room.
+        let most = (available * 0.8).min(available - VIEW).max(60.0);
+        Panel::bottom("below").resizable(true).default_size(available * 0.36).size_range(60.0..=most).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                for (below, name) in [
+                    (Below::Graph, "below.graph"),
+                    (Below::Text, "below.text"),
+                    (Below::Analysis, "below.analysis"),
+                    (Below::Real, "below.real"),
+                    (Below::Variants, "below.variants"),
+                ] {
+                    let label = match below == Below::Text && !studio.document.is_valid() {
+                        // Red on the color of the selection would not be readable.
+                        true if self.below == below => RichText::new(format!("! {}", language.text(name))),
+                        true => RichText::new(format!("! {}", language.text(name))).color(ui.visuals().error_fg_color),
+                        false => RichText::new(language.text(name)),
+                    };
+                    if ui.selectable_label(self.below == below, label).clicked() {
+                        self.below = below;
+                    }
+                }
+            });
+            // A panel with little content keeps its size.
+            ui.set_min_size(ui.available_size());
+            match self.below {
+                Below::Graph => self.graph.show(ui, studio, language, actions),
+                Below::Text => self.text.show(ui, studio, language, actions),
+                Below::Analysis => analysis_panel::show(ui, studio, language),
+                Below::Real => self.real.show(ui, studio, language),
+                Below::Variants => self.variants.show(ui, studio, language, actions),
             }
         });
     }

@@ -159,6 +159,9 @@ fn ground(in: Corner) -> @location(0) vec4f {
     return exposed(diffuse(color, sun, vec4f(triple(LEVEL_SKY) * open, open)), in.place);
 }
 
+// The brightest glitter, relative to the light on a surface that faces the sun.
+const BRIGHTEST: f32 = 0.014;
+
 @fragment
 fn water(in: Corner) -> @location(0) vec4f {
     let seen = sun_seen(in.uv);
@@ -176,7 +179,12 @@ fn water(in: Corner) -> @location(0) vec4f {
     let reflected = mirrored_share(cosine);
     let body = water_body(true, depth, cosine, max(triple(SUN).z, 0.0));
     let mirrored = sky_light(unit(vec3f(along.xy, max(-along.z, 0.004))));
-    return exposed(water_light(body, up, -along, triple(SUN), seen, reflected) + reflected * mirrored, in.place);
+    // Here the camera may face the sun at any time. Its glitter, much brighter than snow, is dimmed so far that the sea
+    // still looks like water.
+    let glint = glitter(up, -along, triple(SUN));
+    let dazzling = triple(SUNLIGHT) * (seen * (glint - glint / (1.0 + glint / BRIGHTEST)));
+    let light = water_light(body, up, -along, triple(SUN), seen, reflected) - dazzling;
+    return exposed(light + reflected * mirrored, in.place);
 }
 
 // Number of steps towards the sun over the land in the search for its shadow.

@@ -7,9 +7,9 @@ use eframe::egui_wgpu::Callback;
 use glam::Vec3;
 
 use super::action::Action;
-use super::legend;
 use super::light::{Block, Light};
 use super::relief::{Ability, Drawing, Scene};
+use super::{legend, tool_row};
 use crate::catalogue::Language;
 use crate::preview::contours::suiting;
 use crate::preview::frame::{Frame, Quality};
@@ -162,7 +162,7 @@ impl ReliefPanel {
     }
 
     fn controls(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
-        ui.horizontal_wrapped(|ui| {
+        tool_row::show(ui, |ui| {
             let mut sun = self.sun.unwrap_or(studio.look.sun);
             ui.label(language.text("relief.sun"));
             let azimuth = ui

@@ -2,6 +2,7 @@
 
 use eframe::egui::{self, Color32, ColorImage, RichText, Sense, TextureHandle, TextureOptions, Ui, Vec2, vec2};
 use orogen::presets;
+use orogen::recipe::Preset;
 
 use super::action::Action;
 use super::command::Command;
@@ -12,6 +13,8 @@ use crate::settings::Settings;
 #[derive(Default)]
 pub struct StartPage {
     pictures: Vec<(&'static str, TextureHandle)>,
+    /// The description of each preset.
+    abouts: Vec<String>,
 }
 
 /// A picture of each preset.
@@ -24,6 +27,8 @@ impl StartPage {
     pub fn show(&mut self, ui: &mut Ui, settings: &Settings, language: Language, actions: &mut Vec<Action>) {
         if self.pictures.is_empty() {
             self.pictures = PICTURES.iter().filter_map(|(name, bytes)| Some((*name, load(ui, name, bytes)?))).collect();
+            let about = |preset: &Preset| preset.recipe().map(|recipe| recipe.about).unwrap_or_default();
+            self.abouts = presets::all().iter().map(about).collect();
         }
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.add_space(12.0);
@@ -53,10 +58,10 @@ impl StartPage {
             ui.add_space(4.0);
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = vec2(10.0, 10.0);
-                for preset in presets::all() {
+                for (preset, about) in presets::all().iter().zip(&self.abouts) {
                     let picture =
                         self.pictures.iter().find(|(name, _)| *name == preset.name).map(|(_, picture)| picture);
-                    if card(ui, preset.name, picture) {
+                    if card(ui, preset.name, about, picture) {
                         actions.push(Action::OpenPreset(preset.name));
                     }
                 }
@@ -65,9 +70,10 @@ impl StartPage {
     }
 }
 
-fn card(ui: &mut Ui, name: &str, picture: Option<&TextureHandle>) -> bool {
+fn card(ui: &mut Ui, name: &str, about: &str, picture: Option<&TextureHandle>) -> bool {
     let (rect, response) = ui.allocate_exact_size(vec2(SIDE, SIDE + 22.0), Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("preset {name}")));
+    let response = response.on_hover_text(about);
     let painter = ui.painter_at(rect);
     let image = egui::Rect::from_min_size(rect.min, Vec2::splat(SIDE));
     painter.rect_filled(rect, 4.0, ui.visuals().extreme_bg_color);

@@ -5,6 +5,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use orogen::io::test_folder::TestFolder;
 use orogen_studio::catalogue::Language;
+use orogen_studio::settings::Settings;
 use orogen_studio::window::app::App;
 use std::time::Duration;
 
@@ -236,4 +237,31 @@ fn the_whole_graph_is_in_its_panel() {
             }
         }
     }
+}
+
+#[test]
+fn panels_are_hidden_and_a_small_window_shows_the_land() {
+    let folder = TestFolder::new("studio-panels").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until_done(&mut harness);
+    let view = |harness: &Harness<'_, App>| harness.get_by_label("relief view").rect();
+    let before = view(&harness);
+    press(&mut harness, Modifiers::NONE, Key::F6);
+    assert!(view(&harness).height() > before.height() + 150.0 && harness.query_by_label("Tidy").is_none());
+    press(&mut harness, Modifiers::NONE, Key::F7);
+    assert!(view(&harness).width() > before.width() + 150.0 && harness.query_by_label("Next seed").is_none());
+    let settings = Settings::read(Some(&folder));
+    assert!(!settings.has_below && !settings.has_inspector, "it is remembered");
+    // What needs a panel shows it again.
+    press(&mut harness, Modifiers::COMMAND, Key::Num3);
+    assert!(harness.query_by_label("Tidy").is_some());
+    press(&mut harness, Modifiers::NONE, Key::F11);
+    assert!(harness.query_by_label("Tidy").is_none());
+    press(&mut harness, Modifiers::NONE, Key::F11);
+    assert!(harness.query_by_label("Tidy").is_some() && harness.query_by_label("Next seed").is_some());
+    harness.set_size([480.0, 320.0].into());
+    harness.run_steps(4);
+    assert!(view(&harness).height() > 60.0, "{:?}", view(&harness));
+    press(&mut harness, Modifiers::COMMAND, Key::Num2);
+    assert!(harness.get_by_label("map view").rect().height() > 60.0);
 }

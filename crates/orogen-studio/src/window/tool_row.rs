@@ -1,0 +1,15 @@
+//! The tools above a view.
+
+use eframe::egui::{ScrollArea, Ui};
+
+/// The height below which tools have one row, which can be scrolled.
+const LOW: f32 = 300.0;
+
+/// Shows the tools of a view in rows.
+pub fn show(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+    if ui.available_height() < LOW {
+        ScrollArea::horizontal().id_salt("tools").show(ui, |ui| ui.horizontal(add));
+    } else {
+        ui.horizontal_wrapped(add);
+    }
+}
