@@ -401,13 +401,18 @@ pub fn message(context: &Context, title: &str, text: &str) -> bool {
     is_open && stays && !context.input(|input| input.key_pressed(Key::Escape))
 }
 
-/// A window in the center of the screen.
+/// The part of the screen above a window.
+const ABOVE: f32 = 0.12;
+
+/// A window in the middle of the screen. Its top stays in place when its content grows, so that what is pressed does
+/// not move away from the pointer.
 pub fn window(context: &Context, title: &str, is_open: &mut bool, size: Vec2, add: impl FnOnce(&mut egui::Ui)) {
+    let above = (context.content_rect().height() * ABOVE).round();
     egui::Window::new(title)
         .open(is_open)
         .collapsible(false)
         .resizable(false)
-        .anchor(Align2::CENTER_CENTER, Vec2::ZERO)
+        .anchor(Align2::CENTER_TOP, vec2(0.0, above))
         .default_size(size)
         .show(context, |ui| {
             ui.set_min_width(size.x);

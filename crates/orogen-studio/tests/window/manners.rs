@@ -265,3 +265,21 @@ fn panels_are_hidden_and_a_small_window_shows_the_land() {
     press(&mut harness, Modifiers::COMMAND, Key::Num2);
     assert!(harness.get_by_label("map view").rect().height() > 60.0);
 }
+
+/// What is pressed stays under the pointer, whatever the dialog shows next.
+#[test]
+fn a_dialog_stays_where_it_is() {
+    let folder = TestFolder::new("studio-dialog-place").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until_done(&mut harness);
+    press(&mut harness, Modifiers::COMMAND, Key::E);
+    let place = |harness: &Harness<'_, App>| harness.get_by_label("Render").rect();
+    let before = place(&harness);
+    for kind in ["Map sheet", "Tilemap", "Render", "Game engine", "Layer or mesh"] {
+        harness.get_by_label(kind).click();
+        harness.run_steps(3);
+        assert!((place(&harness).min - before.min).length() < 1.0, "{kind}: {:?}", place(&harness));
+        let button = harness.get_by_role_and_label(Role::Button, "Export").rect();
+        assert!(button.bottom() < 800.0, "{kind}: the button is in the window");
+    }
+}

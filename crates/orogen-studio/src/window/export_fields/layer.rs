@@ -48,9 +48,6 @@ pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Languag
 
 /// The difference between the highest and the lowest height in the picture.
 fn relief(studio: &Studio) -> Option<f64> {
-    let frame = studio.frame.as_ref()?;
-    let finite = frame.heights.data().iter().copied().filter(|height| height.is_finite());
-    let (low, high) =
-        finite.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), height| (low.min(height), high.max(height)));
-    (low <= high).then(|| f64::from(high - low))
+    let [low, high] = studio.frame.as_ref()?.range();
+    (low <= high).then(|| high - low)
 }

@@ -1,5 +1,6 @@
 //! Rows of fields for declared options.
 
+use std::borrow::Cow;
 use std::ops::RangeInclusive;
 
 use eframe::egui::{Checkbox, DragValue, Grid, Response, Role, TextEdit, Ui, WidgetInfo};
@@ -61,7 +62,7 @@ impl OptionRows<'_> {
             for (nth, spec) in parts.enumerate() {
                 let is_enabled = applies(spec, self.specs, self.given);
                 let label = self.label(spec);
-                ui.add_enabled_ui(is_enabled, |ui| self.switch(ui, spec, label));
+                ui.add_enabled_ui(is_enabled, |ui| self.switch(ui, spec, &label));
                 if nth % COLUMNS == COLUMNS - 1 {
                     ui.end_row();
                 }
@@ -69,9 +70,12 @@ impl OptionRows<'_> {
         });
     }
 
-    /// The name of an option; options of formats and layers have the same names as on the command line.
-    fn label(&self, spec: &OptionSpec) -> &'static str {
-        self.fields.language.find(&format!("option.{}", spec.name)).unwrap_or(spec.name)
+    /// The name of an option; options of formats and layers have the words of the command line.
+    fn label(&self, spec: &OptionSpec) -> Cow<'static, str> {
+        match self.fields.language.find(&format!("option.{}", spec.name)) {
+            Some(label) => label.into(),
+            None => sentence(spec.name).into(),
+        }
     }
 
     /// The name of a choice.
@@ -163,7 +167,7 @@ impl OptionRows<'_> {
         if !items.iter().any(|(item, _)| *item == value) {
             items.push((value.clone(), value.clone()));
         }
-        if rows::list(ui, self.label(spec), &mut value, &items) {
+        if rows::list(ui, &self.label(spec), &mut value, &items) {
             self.set(spec, Some(value).filter(|value| !value.is_empty()));
         }
     }
@@ -175,7 +179,7 @@ impl OptionRows<'_> {
         let mut name = if is_file { String::new() } else { value.clone() };
         let mut items: Vec<(String, String)> = SETS.iter().map(|set| self.item(spec, set.name, set.about)).collect();
         items.push((String::new(), self.fields.language.text("export.tileset_file").to_owned()));
-        if rows::list(ui, self.label(spec), &mut name, &items) {
+        if rows::list(ui, &self.label(spec), &mut name, &items) {
             self.given.insert(spec.name, name);
         } else if is_file {
             ui.end_row();
@@ -301,7 +305,7 @@ impl OptionRows<'_> {
     /// Sets the name of a field for screen readers.
     fn named(&self, response: &Response, role: Role, spec: &OptionSpec) {
         let label = self.label(spec);
-        response.widget_info(|| WidgetInfo::labeled(role, true, label));
+        response.widget_info(|| WidgetInfo::labeled(role, true, label.clone()));
     }
 }
 
@@ -320,4 +324,11 @@ fn leaves_out(spec: &OptionSpec) -> bool {
 /// Whether an option switches off a part, and is shown with other such options.
 fn is_part(spec: &OptionSpec) -> bool {
     leaves_out(spec) && !spec.heading.is_empty()
+}
+
+/// The words of a name, as the beginning of a sentence: "Max error" for `max-error`.
+fn sentence(name: &str) -> String {
+    let mut letters = name.chars();
+    let first = letters.next().map(char::to_uppercase).into_iter().flatten();
+    first.chain(letters.map(|letter| if letter == '-' { ' ' } else { letter })).collect()
 }
