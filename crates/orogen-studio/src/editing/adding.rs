@@ -59,7 +59,10 @@ fn suiting(op: &str, [low, high]: [f64; 2]) -> Vec<(&'static str, Value)> {
     match op {
         "terrace" => vec![("step", Value::Number(step))],
         "clamp" => vec![("low", Value::Number(low)), ("high", Value::Number(high))],
-        "select-height" => vec![("range", pair(low + relief / 2.0, high)), ("falloff", pair(step, step))],
+        "select-height" => {
+            let middle = ((low + high) / 2.0 / step).round() * step;
+            vec![("range", pair(middle, high)), ("falloff", pair(step, step))]
+        }
         "remap" => vec![("from", pair(low, high)), ("to", pair(low, high))],
         "curve" => vec![("points", drawing::value(&[[low, low], [high, high]]))],
         _ => Vec::new(),
@@ -116,7 +119,7 @@ mod tests {
         let range = Some([-12.0, 1890.0]);
         for (op, expect) in [
             ("clamp", "low = -100.0\nhigh = 1900.0"),
-            ("select-height", "range = [850.0, 1900.0]\nfalloff = [100.0, 100.0]"),
+            ("select-height", "range = [900.0, 1900.0]\nfalloff = [100.0, 100.0]"),
             ("remap", "from = [-100.0, 1900.0]\nto = [-100.0, 1900.0]"),
             ("curve", "points = [[-100.0, -100.0], [1900.0, 1900.0]]"),
         ] {

@@ -13,7 +13,7 @@ use super::ground::{Ground, set_colors};
 use super::references::{Change, Site, change};
 use super::strokes::{self, Placement};
 use super::tables::{add_node, node, set, top, value_of};
-use super::{groups, names};
+use super::{drawing, groups, names};
 
 /// An edit.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +23,8 @@ pub enum Edit {
     Seed(u64),
     /// Sets a number of the world: `cell`, `sea_level`.
     World(&'static str, f64),
+    /// Sets the width and height of the world in metres.
+    Size([f64; 2]),
     /// Sets the default of a parameter of the recipe.
     Default { parameter: String, value: f64 },
     /// Sets a parameter of a node.
@@ -61,7 +63,7 @@ impl Edit {
     pub fn label(&self) -> &'static str {
         match self {
             Edit::Seed(_) => "edit.seed",
-            Edit::World(..) => "edit.world",
+            Edit::World(..) | Edit::Size(_) => "edit.world",
             Edit::Default { .. } | Edit::Param { .. } => "edit.value",
             Edit::Colors { .. } => "edit.colors",
             Edit::Reset { .. } => "edit.reset",
@@ -82,6 +84,7 @@ impl Edit {
         match self {
             Edit::Seed(_) => Some("seed".into()),
             Edit::World(key, _) => Some(format!("world/{key}")),
+            Edit::Size(_) => Some("world/size".into()),
             Edit::Default { parameter, .. } => Some(format!("parameter/{parameter}")),
             Edit::Param { node, key, .. } => Some(format!("node/{node}/{key}")),
             Edit::Colors { ground, index, .. } => Some(format!("colors/{ground:?}/{index}")),
@@ -125,6 +128,10 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
         Edit::Seed(seed) => {
             let seed = i64::try_from(*seed).map_err(|_| format!("a seed must be at most {}, not {seed}", i64::MAX))?;
             set(top(&mut document, "world").ok_or_else(|| missing("[world]"))?, "seed", seed.into());
+        }
+        Edit::Size(sides) => {
+            let size = value_of(&drawing::numbers(sides)).ok_or("a size is two numbers")?;
+            set(top(&mut document, "world").ok_or_else(|| missing("[world]"))?, "size", size);
         }
         Edit::World(key, value) => {
             set(top(&mut document, "world").ok_or_else(|| missing("[world]"))?, key, (*value).into());

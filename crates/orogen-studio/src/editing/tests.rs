@@ -76,6 +76,7 @@ fn values_change_and_comments_stay() {
     let param = |key: &str, value: Value| Edit::Param { node: "hills".into(), key: key.into(), value };
     check(Edit::Seed(12), "seed = 7 ", "seed = 12 ");
     check(Edit::World("cell", 20.0), "cell = 10", "cell = 20.0");
+    check(Edit::Size([5000.0, 3000.0]), "size = [4000, 4000]", "size = [5000.0, 3000.0]");
     check(Edit::Default { parameter: "relief".into(), value: 1200.0 }, "relief = 900.0 ", "relief = 1200.0 ");
     check(param("wavelength", Value::Number(500.0)), "wavelength = 800.0 #", "wavelength = 500.0 #");
     check(param("octaves", Value::Integer(3)), "octaves = 5\n", "octaves = 3\n");

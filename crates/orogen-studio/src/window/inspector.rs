@@ -1,6 +1,6 @@
 //! The panel next to the view: the world, the recipe's parameters, and the selected node.
 
-use eframe::egui::{self, CollapsingHeader, ComboBox, DragValue, RichText, TextEdit, Ui};
+use eframe::egui::{self, CollapsingHeader, ComboBox, DragValue, Id, RichText, TextEdit, Ui};
 use orogen::declare::{Input, Shape};
 use orogen::node::Node;
 use orogen::recipe::{NamedNode, Recipe};
@@ -270,28 +270,68 @@ fn world(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Act
                 actions.push(Action::Command(Command::NextSeed));
             }
         });
+        let metres = Measure { scale: 1.0, unit: " m", range: [-1e6, 1e6], least: 1.0 };
         ui.horizontal(|ui| {
-            let label = ui.label(language.text("inspector.sea_level"));
-            let mut level = world.sea_level;
-            let field = ui.add(DragValue::new(&mut level).speed(2.0).suffix(" m").max_decimals(3));
-            let field = field.labelled_by(label.id);
-            if field.changed() {
-                actions.push(Action::Edit(Edit::World("sea_level", fields::rounded(level))));
-            }
-            if field.drag_stopped() || field.lost_focus() {
-                actions.push(Action::EndGesture);
-            }
+            let label = ui.label(language.text("inspector.sea_level")).id;
+            let level = |level| Edit::World("sea_level", level);
+            measure(ui, label, world.sea_level, metres, &level, actions);
         });
-        let extent = match world.size {
-            Some([width, height]) => format!("{} × {} km", kilometres(width), kilometres(height)),
-            None => language.text("inspector.unbounded").to_owned(),
-        };
-        ui.weak(format!("{extent}, {} {} m", language.text("inspector.cell"), orogen::grid::words::number(world.cell)));
+        ui.horizontal(|ui| {
+            let label = ui.label(language.text("inspector.size")).id;
+            let Some([width, height]) = world.size else {
+                ui.weak(language.text("inspector.unbounded"));
+                return;
+            };
+            let kilometres = Measure { scale: 1000.0, unit: " km", range: SIZES, least: 1e-3 };
+            measure(ui, label, width, kilometres, &|width| Edit::Size([width, height]), actions);
+            ui.label("×");
+            measure(ui, label, height, kilometres, &|height| Edit::Size([width, height]), actions);
+        });
+        ui.horizontal(|ui| {
+            let label = ui.label(language.text("inspector.cell")).id;
+            // Finer cells than this would need more memory than there is.
+            let side = world.size.map_or(f64::INFINITY, |[width, height]| width.max(height));
+            let range = if side.is_finite() { [side / 65_536.0, side / 2.0] } else { [1e-3, 1e6] };
+            measure(
+                ui,
+                label,
+                world.cell,
+                Measure { range, least: 0.05, ..metres },
+                &|cell| Edit::World("cell", cell),
+                actions,
+            );
+        });
     });
 }
 
-fn kilometres(metres: f64) -> String {
-    orogen::grid::words::number((metres / 10.0).round() / 100.0)
+/// Width or height of a world, in metres.
+const SIZES: [f64; 2] = [1.0, 1e8];
+
+/// How a length is shown.
+#[derive(Clone, Copy)]
+struct Measure {
+    /// Metres per unit.
+    scale: f64,
+    unit: &'static str,
+    /// The range in metres.
+    range: [f64; 2],
+    /// The smallest change by one point of dragging, in this unit.
+    least: f64,
+}
+
+/// A field for a length in metres that an edit sets.
+fn measure(ui: &mut Ui, label: Id, metres: f64, shown: Measure, edit: &dyn Fn(f64) -> Edit, actions: &mut Vec<Action>) {
+    let mut number = metres / shown.scale;
+    let [low, high] = shown.range.map(|end| end / shown.scale);
+    let speed = (number.abs() * 0.01).max(shown.least);
+    let field = DragValue::new(&mut number).range(low..=high).speed(speed).suffix(shown.unit).max_decimals(3);
+    let field = ui.add(field).labelled_by(label);
+    if field.changed() {
+        actions.push(Action::Edit(edit(fields::rounded(number * shown.scale))));
+    }
+    if field.drag_stopped() || field.lost_focus() {
+        actions.push(Action::EndGesture);
+    }
 }
 
 fn parameters(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {

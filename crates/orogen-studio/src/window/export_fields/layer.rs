@@ -49,5 +49,5 @@ pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Languag
 /// The difference between the highest and the lowest height in the picture.
 fn relief(studio: &Studio) -> Option<f64> {
     let [low, high] = studio.frame.as_ref()?.range();
-    (low <= high).then(|| high - low)
+    (low <= high).then_some(high - low)
 }
