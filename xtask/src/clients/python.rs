@@ -21,9 +21,16 @@ pub fn lay_out(python: &Path, site: &Path) -> Result {
     sh(program(python).arg(root().join("xtask/clients/install_python.py")).arg(native).arg(site))
 }
 
+/// Maximum length of the wheel in bytes.
+const LONGEST: u64 = 12_000_000;
+
 /// Tests the wheel that maturin makes.
 pub fn check_wheel() -> Result {
     let wheel = wheel()?;
+    let length = std::fs::metadata(&wheel).map_or(0, |metadata| metadata.len());
+    if length > LONGEST {
+        return Err(Failure::new(format!("the wheel has {length} bytes; it should have at most {LONGEST}")));
+    }
     let (venv, site) = environment("wheel")?;
     let mut unpack = program(install::python());
     unpack.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--no-index"]);
