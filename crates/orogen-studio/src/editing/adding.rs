@@ -7,23 +7,63 @@ use orogen::recipe::Recipe;
 use orogen::value::Value;
 
 use super::drawing;
-use super::edit::Edit;
+use super::edit::{Edit, Reader};
 
-/// The edit that adds a node after the selected one. If nothing but outputs reads the selected node, and the new one
-/// changes its heights, then the outputs read the new node: what is added at the end is seen. `range` is the range of
-/// the land's heights in metres.
+/// Where a new node goes.
+#[derive(Debug, Clone, Copy)]
+pub enum After<'a> {
+    /// Nowhere: it reads nothing.
+    Nothing,
+    /// After a node.
+    Node(&'a str),
+    /// Into the wire to a reader.
+    Wire(&'a Reader),
+}
+
+/// The edit that adds a node. A node that goes into a wire reads what the reader read, and the reader reads the node.
+/// After a node that nothing but outputs reads, a node that changes its heights is read by these outputs: what is added
+/// at the end is seen. `range` is the range of the land's heights in metres.
 #[must_use]
-pub fn edit(recipe: &Recipe, name: String, op: &str, selected: Option<&str>, range: Option<[f64; 2]>) -> Edit {
+pub fn edit(recipe: &Recipe, name: String, op: &str, after: After, range: Option<[f64; 2]>) -> Edit {
     let spec = Node::named(op).map(|node| node.spec());
     let key = spec.and_then(|spec| spec.inputs.first().map(|input| input.name).or(spec.named_inputs.then_some("a")));
-    let Some((selected, key)) = selected.zip(key) else {
-        return Edit::Add { name, op: op.to_owned(), inputs: Vec::new(), params: Vec::new(), outputs: Vec::new() };
+    let source = match after {
+        After::Nothing => None,
+        After::Node(node) => Some(node.to_owned()),
+        After::Wire(reader) => read_by(recipe, reader),
     };
-    let ends = ends_at(recipe, selected);
-    let outputs = if spec.is_some_and(changes_heights) { ends.clone() } else { Vec::new() };
-    let params = range.filter(|_| !ends.is_empty()).map(|range| suiting(op, range)).unwrap_or_default();
+    let Some((source, key)) = source.zip(key) else {
+        return Edit::Add { name, op: op.to_owned(), inputs: Vec::new(), params: Vec::new(), readers: Vec::new() };
+    };
+    let ends = ends_at(recipe, source.split('.').next().unwrap_or(&source));
+    let is_land = spec.is_some_and(changes_heights);
+    let readers = match after {
+        After::Wire(reader) => vec![reader.clone()],
+        _ if is_land => ends.iter().cloned().map(Reader::Output).collect(),
+        _ => Vec::new(),
+    };
+    let is_of_land = !ends.is_empty() || readers.iter().any(|reader| matches!(reader, Reader::Output(_)));
+    let params = range.filter(|_| is_of_land).map(|range| suiting(op, range)).unwrap_or_default();
     let params = params.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-    Edit::Add { name, op: op.to_owned(), inputs: vec![(key.to_owned(), selected.to_owned())], params, outputs }
+    Edit::Add { name, op: op.to_owned(), inputs: vec![(key.to_owned(), source)], params, readers }
+}
+
+/// The node or layer that a reader reads.
+fn read_by(recipe: &Recipe, reader: &Reader) -> Option<String> {
+    let input = match reader {
+        Reader::Output(name) => {
+            recipe.output_inputs().iter().find(|(output, _)| output == name).map(|(_, input)| input)
+        }
+        Reader::Input { node, key } => {
+            let named = recipe.nodes().iter().find(|named| named.name == *node)?;
+            let own = named.node.inputs().iter().position(|input| input.name == key);
+            own.map(|i| named.node.input(i)).or((key == "mask").then_some(&named.mask))
+        }
+    };
+    match input? {
+        Input::Node(source) => Some(source.clone()),
+        _ => None,
+    }
 }
 
 /// The outputs that read a node, if no node does.
@@ -84,8 +124,12 @@ mod tests {
         [outputs]\nheight = \"soft\"\nmoisture = \"soft\"\nbase = \"hills\"\n";
 
     fn text_after(op: &str, selected: Option<&str>, range: Option<[f64; 2]>) -> String {
+        text_with(op, selected.map_or(After::Nothing, After::Node), range)
+    }
+
+    fn text_with(op: &str, after: After, range: Option<[f64; 2]>) -> String {
         let mut document = Document::new("test", TEXT.into()).unwrap();
-        let edit = edit(document.recipe(), "new".into(), op, selected, range);
+        let edit = edit(document.recipe(), "new".into(), op, after, range);
         document.apply(&edit).unwrap();
         let text = document.text().to_owned();
         assert!(document.undo() && document.text() == TEXT, "one step of undo");
@@ -112,6 +156,20 @@ mod tests {
         }
         assert!(!text_after("perlin", Some("soft"), range).contains("\"new\""));
         assert!(!text_after("terrace", None, None).contains("\"new\""));
+    }
+
+    #[test]
+    fn a_node_goes_into_a_wire() {
+        let input = Reader::Input { node: "soft".into(), key: "source".into() };
+        let text = text_with("warp", After::Wire(&input), None);
+        assert!(text.contains("[nodes.new]\nop = \"warp\"\nsource = \"hills\""), "{text}");
+        assert!(text.contains("op = \"blur\"\nsource = \"new\"") && text.contains("base = \"hills\""), "{text}");
+        let text = text_with("terrace", After::Wire(&Reader::Output("height".into())), Some([0.0, 500.0]));
+        assert!(text.contains("source = \"soft\"\nstep = 50.0"), "{text}");
+        assert!(text.contains("height = \"new\"\nmoisture = \"soft\""), "{text}");
+        // A wire that is gone.
+        let gone = Reader::Input { node: "none".into(), key: "source".into() };
+        assert!(text_with("blur", After::Wire(&gone), None).contains("source = 0"));
     }
 
     #[test]

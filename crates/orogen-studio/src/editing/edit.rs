@@ -37,9 +37,9 @@ pub enum Edit {
     Output { name: String, source: Input },
     /// Sets the colors of a surface or a terrain class, by its index.
     Colors { ground: Ground, index: usize, colors: Vec<Rgb> },
-    /// Adds a node with some inputs and parameters. Required inputs that are not in `inputs` are 0. `outputs` then read
+    /// Adds a node with some inputs and parameters. Required inputs that are not in `inputs` are 0. `readers` then read
     /// the node.
-    Add { name: String, op: String, inputs: Vec<(String, String)>, params: Vec<(String, Value)>, outputs: Vec<String> },
+    Add { name: String, op: String, inputs: Vec<(String, String)>, params: Vec<(String, Value)>, readers: Vec<Reader> },
     /// Writes stroke number `at`, from 0, of a paint node: a new stroke, or a longer form of the last one. A node that
     /// does not exist is created at `placement`.
     Stroke { node: String, placement: Placement, at: usize, stroke: Stroke },
@@ -55,6 +55,16 @@ pub enum Edit {
     Ungroup(String),
     /// Renames a group.
     RenameGroup { from: String, to: String },
+}
+
+/// What reads a node.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names of fields say what they are")]
+pub enum Reader {
+    /// An input of a node, or its `mask`.
+    Input { node: String, key: String },
+    /// An output of the recipe.
+    Output(String),
 }
 
 impl Edit {
@@ -187,16 +197,26 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
             }
         }
         Edit::Colors { ground, index, colors } => set_colors(&mut document, *ground, *index, colors)?,
-        Edit::Add { name, op, inputs, params, outputs: ends } => {
+        Edit::Add { name, op, inputs, params, readers } => {
             add(&mut document, name, op, inputs)?;
             let own = node(&mut document, name).ok_or_else(|| missing(&format!("node `{name}`")))?;
             for (key, value) in params {
                 let value = value_of(value).ok_or_else(|| format!("`{key}` cannot be {}", value.describe()))?;
                 set(own, key, value);
             }
-            if !ends.is_empty() {
-                let outputs = top(&mut document, "outputs").ok_or_else(|| missing("[outputs]"))?;
-                ends.iter().for_each(|output| set(outputs, output, name.as_str().into()));
+            for reader in readers {
+                match reader {
+                    Reader::Output(output) => {
+                        let outputs = top(&mut document, "outputs").ok_or_else(|| missing("[outputs]"))?;
+                        set(outputs, output, name.as_str().into());
+                    }
+                    Reader::Input { node: reader, key } => {
+                        written(reader)?;
+                        let own = node(&mut document, reader).ok_or_else(|| missing(&format!("node `{reader}`")))?;
+                        let key = written_key(own.get("op").and_then(Item::as_str), key, |key| own.contains_key(key));
+                        set(own, &key, name.as_str().into());
+                    }
+                }
             }
         }
         Edit::Stroke { node: name, placement, at, stroke } => {

@@ -134,7 +134,7 @@ fn nodes_are_added_and_copied() {
         op: op.into(),
         inputs: inputs.iter().map(|(key, source)| ((*key).into(), (*source).into())).collect(),
         params: Vec::new(),
-        outputs: Vec::new(),
+        readers: Vec::new(),
     };
     document.apply(&add("bent", "warp", &[("source", "hills")])).unwrap();
     document.apply(&add("sum", "expr", &[("a", "bent")])).unwrap();
@@ -160,7 +160,7 @@ fn a_line_is_drawn_and_moved() {
         op: "path".into(),
         inputs: Vec::new(),
         params: vec![("points".into(), points)],
-        outputs: Vec::new(),
+        readers: Vec::new(),
     };
     assert!(document.apply(&add(points(&[[0.0, 0.0]]))).is_err(), "a line has two points");
     document.apply(&add(points(&[[100.0, 200.0], [900.0, 350.5]]))).unwrap();

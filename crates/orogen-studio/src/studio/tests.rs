@@ -1,6 +1,7 @@
 //! Random edits, as made by a person in a hurry.
 
 use super::*;
+use crate::editing::adding::After;
 use crate::editing::{adding, names};
 use orogen::declare::Input;
 use orogen::node::Node;
@@ -64,7 +65,8 @@ fn edit(recipe: &Recipe, selected: &[String], random: &mut Random) -> Option<Edi
             let taken = names.iter().map(String::as_str).collect();
             let range = (random.below(2) == 0).then(|| [-50.0, random.below(2000) as f64]);
             let name = names::free(&names::of_op(op), &taken);
-            adding::edit(recipe, name, op, selected.first().map(String::as_str), range)
+            let after = selected.first().map_or(After::Nothing, |selected| After::Node(selected));
+            adding::edit(recipe, name, op, after, range)
         }
         6 => Edit::Delete(selected.to_vec()),
         7 => Edit::Duplicate(selected.to_vec()),
@@ -231,7 +233,8 @@ fn a_node_that_is_added_undone_and_added_again_does_not_read_itself() {
     for _ in 0..3 {
         let selected = studio.selected.first().cloned();
         let recipe = studio.document.recipe();
-        let edit = adding::edit(recipe, "step".into(), "terrace", selected.as_deref(), Some([-3.0, 1870.0]));
+        let after = selected.as_deref().map_or(After::Nothing, After::Node);
+        let edit = adding::edit(recipe, "step".into(), "terrace", after, Some([-3.0, 1870.0]));
         studio.edit(&edit).unwrap();
         assert_eq!(studio.selected, ["step"]);
         assert!(studio.undo());

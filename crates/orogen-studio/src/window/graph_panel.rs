@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use eframe::egui::{
-    self, Align2, Color32, ColorImage, FontId, Key, PointerButton, Pos2, Rect, Response, Sense, Stroke, StrokeKind,
+    self, Align2, ColorImage, FontId, Key, PointerButton, Pos2, Rect, Response, Sense, Stroke, StrokeKind,
     TextureHandle, TextureOptions, Ui, UiBuilder, Vec2, pos2, vec2,
 };
 use orogen::declare::Input;
@@ -15,13 +15,14 @@ use super::graph_box::{self, Shown, WIDTH};
 use super::graph_search::{Found, Search};
 use super::menu;
 use crate::catalogue::Language;
+use crate::editing::adding::After;
 use crate::editing::brush::Effect;
-use crate::editing::edit::Edit;
+use crate::editing::edit::{Edit, Reader};
 use crate::editing::{adding, drawing, groups, names, strokes};
 use crate::preview::picture::Picture;
 use crate::studio::{Studio, surface};
 use crate::view::arrangement::{self, Area};
-use crate::view::scene::{End, GraphBox, Kind, Scene};
+use crate::view::scene::{GraphBox, Kind, Scene};
 
 /// State of the panel.
 pub struct Graph {
@@ -41,6 +42,8 @@ pub struct Graph {
     search: Option<Search>,
     /// The node from which a wire is being drawn.
     wire: Option<String>,
+    /// The wire that was chosen, by what reads through it.
+    pub(super) chosen: Option<Reader>,
     /// The corner where the selection rectangle started.
     rectangle: Option<Pos2>,
     /// The small pictures of nodes on the graphics card.
@@ -67,6 +70,7 @@ impl Default for Graph {
             placed: None,
             search: None,
             wire: None,
+            chosen: None,
             rectangle: None,
             textures: HashMap::new(),
             wants_whole: true,
@@ -115,24 +119,19 @@ impl Graph {
         painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
         let scene = std::mem::take(&mut self.scene);
         let rects: Vec<Rect> = scene.boxes.iter().map(|block| self.rect_of(block, studio, origin)).collect();
-        for wire in &scene.wires {
-            let (Some(from), Some(to)) = (scene.boxes.get(wire.from), scene.boxes.get(wire.to)) else { continue };
-            let (Some(start), Some(end)) = (rects.get(wire.from), rects.get(wire.to)) else { continue };
-            let start = graph_box::at(*start, graph_box::outlet(from, wire.outlet), self.zoom, true);
-            let end = match wire.end {
-                End::Mask => pos2(end.center().x, end.top()),
-                End::Port(k) => graph_box::at(*end, graph_box::port(to, k), self.zoom, false),
-            };
-            let is_own = [from, to].iter().any(|block| block.nodes.iter().any(|name| studio.selected.contains(name)));
-            self.draw_wire(&painter, start, end, is_own, ui.visuals().weak_text_color());
-        }
+        self.draw_wires(ui, &painter, &scene, &rects, studio);
         for (block, own) in scene.boxes.iter().zip(&rects) {
             self.show_box(ui, &painter, block, *own, (rect, studio, language), &scene, actions);
         }
         self.finish_wire(ui, &painter, &scene, &rects, actions);
         self.select(ui, &painter, &background, &scene, &rects, studio, actions);
-        self.scene = scene;
         let pointer = background.interact_pointer_pos();
+        if background.clicked()
+            && let Some(at) = pointer
+        {
+            self.choose_wire(&scene, &rects, at);
+        }
+        self.scene = scene;
         if background.double_clicked() || background.secondary_clicked() {
             let at = self.to_graph(pointer.unwrap_or(rect.center()) - origin.to_vec2());
             self.search = Some(Search::new(at));
@@ -141,7 +140,8 @@ impl Graph {
             self.search = None;
         }
         let is_over = ui.rect_contains_pointer(rect) && ui.ctx().memory(|memory| memory.focused().is_none());
-        if is_over && ui.input(|input| input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace)) {
+        let is_delete = ui.input(|input| input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace));
+        if is_over && is_delete && !self.cut_wire(studio, actions) {
             actions.push(Action::Command(Command::Delete));
         }
         self.find(ui, rect, studio, language, actions);
@@ -243,14 +243,6 @@ impl Graph {
                 self.fitted = None;
             }
         }
-    }
-
-    fn draw_wire(&self, painter: &egui::Painter, from: Pos2, to: Pos2, is_strong: bool, color: Color32) {
-        let bend = ((to.x - from.x).abs() * 0.5).clamp(20.0 * self.zoom, 120.0);
-        let stroke =
-            Stroke::new(if is_strong { 2.2 } else { 1.3 }, if is_strong { color.gamma_multiply(1.6) } else { color });
-        let points = [from, from + vec2(bend, 0.0), to - vec2(bend, 0.0), to];
-        painter.add(egui::epaint::CubicBezierShape::from_points_stroke(points, false, Color32::TRANSPARENT, stroke));
     }
 
     /// Selects the boxes in a rectangle that is dragged over the background.
@@ -491,8 +483,12 @@ impl Graph {
         let taken = recipe.nodes().iter().filter_map(|named| groups::rest(&named.name, &self.group)).collect();
         let name = groups::within(&self.group, &names::free(&names::of_op(op), &taken));
         let range = studio.frame.as_ref().map(|frame| frame.range());
-        let selected = studio.selected.first().map(String::as_str);
-        let edit = adding::edit(recipe, name.clone(), op, selected, range);
+        let after = match (&self.chosen, studio.selected.first()) {
+            (Some(reader), _) => After::Wire(reader),
+            (None, Some(selected)) => After::Node(selected),
+            (None, None) => After::Nothing,
+        };
+        let edit = adding::edit(recipe, name.clone(), op, after, range);
         let has_input = matches!(&edit, Edit::Add { inputs, .. } if !inputs.is_empty());
         if !has_input {
             // A free position near the pointer.

@@ -291,7 +291,7 @@ impl MapPanel {
                 op: op.to_owned(),
                 inputs: Vec::new(),
                 params: vec![(drawing::POINTS.to_owned(), points)],
-                outputs: Vec::new(),
+                readers: Vec::new(),
             }));
             self.tool = Tool::Pan;
         }

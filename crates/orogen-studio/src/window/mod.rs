@@ -18,6 +18,7 @@ pub mod graph_box;
 pub mod graph_panel;
 mod graph_places;
 pub mod graph_search;
+mod graph_wires;
 pub mod ground;
 pub mod inspector;
 pub mod label;

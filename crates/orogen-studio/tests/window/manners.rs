@@ -283,3 +283,35 @@ fn a_dialog_stays_where_it_is() {
         assert!(button.bottom() < 800.0, "{kind}: the button is in the window");
     }
 }
+
+#[test]
+fn a_wire_takes_a_node_and_is_cut() {
+    let folder = TestFolder::new("studio-wires").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until_done(&mut harness);
+    let middle = |harness: &Harness<'_, App>, from: &str, to: &str| {
+        let [from, to] = [from, to].map(|name| harness.get_by_label(&format!("node {name}")).rect());
+        let zoom = from.width() / 150.0;
+        let (start, end) = (from.right_top() + vec2(0.0, 17.0) * zoom, to.left_top() + vec2(0.0, 41.5) * zoom);
+        start + (end - start) / 2.0
+    };
+    let at = middle(&harness, "noise", "terrain");
+    click_at(&mut harness, at);
+    press(&mut harness, Modifiers::COMMAND, Key::Space);
+    harness.get_by_label("Add a node");
+    harness.event(Event::Text("blur".into()));
+    harness.run_steps(3);
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    let text = studio(&harness).document.text().to_owned();
+    assert!(text.contains("op = \"blur\"\nsource = \"noise\""), "{text}");
+    assert!(text.contains("source = \"blur\""), "{text}");
+    assert_eq!(studio(&harness).selected, ["blur"]);
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert!(!studio(&harness).document.text().contains("blur"), "one step of undo");
+    // Cut: the input must be given, so it becomes a number.
+    let at = middle(&harness, "noise", "terrain");
+    click_at(&mut harness, at);
+    press(&mut harness, Modifiers::NONE, Key::Delete);
+    let text = studio(&harness).document.text().to_owned();
+    assert!(text.contains("source = 0.0") && studio(&harness).document.is_valid(), "{text}");
+}
