@@ -5,6 +5,7 @@ use orogen::layer::Interpolation;
 use orogen::node::Node;
 use orogen::recipe::Recipe;
 use orogen::value::Value;
+use orogen::world::HEIGHT;
 
 use super::drawing;
 use super::edit::{Edit, Reader};
@@ -33,7 +34,8 @@ pub fn edit(recipe: &Recipe, name: String, op: &str, after: After, range: Option
         After::Wire(reader) => read_by(recipe, reader),
     };
     let Some((source, key)) = source.zip(key) else {
-        return Edit::Add { name, op: op.to_owned(), inputs: Vec::new(), params: Vec::new(), readers: Vec::new() };
+        let readers = first_land(recipe, spec.is_some_and(makes_heights));
+        return Edit::Add { name, op: op.to_owned(), inputs: Vec::new(), params: Vec::new(), readers };
     };
     let ends = ends_at(recipe, source.split('.').next().unwrap_or(&source));
     let is_land = spec.is_some_and(changes_heights);
@@ -46,6 +48,15 @@ pub fn edit(recipe: &Recipe, name: String, op: &str, after: After, range: Option
     let params = range.filter(|_| is_of_land).map(|range| suiting(op, range)).unwrap_or_default();
     let params = params.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
     Edit::Add { name, op: op.to_owned(), inputs: vec![(key.to_owned(), source)], params, readers }
+}
+
+/// The output of heights, if it is a number, as in an empty recipe: the first node is the land.
+fn first_land(recipe: &Recipe, is_land: bool) -> Vec<Reader> {
+    let outputs = recipe.output_inputs().iter().filter(|(name, _)| is_land && name == HEIGHT);
+    outputs
+        .filter(|(_, input)| matches!(input, Input::Value(_)))
+        .map(|(name, _)| Reader::Output(name.clone()))
+        .collect()
 }
 
 /// The node or layer that a reader reads.
@@ -77,13 +88,18 @@ fn ends_at(recipe: &Recipe, name: &str) -> Vec<String> {
     outputs.map(|(output, _)| output.clone()).collect()
 }
 
-/// Whether an op makes heights from heights, such as an erosion. Masks and measurements, such as slopes, are not land.
-fn changes_heights(spec: &Spec) -> bool {
-    let is_mask = spec.op.starts_with("select-");
+/// Whether an op makes heights. Masks and measurements, such as slopes, are not land.
+fn makes_heights(spec: &Spec) -> bool {
+    let is_mask = spec.op.starts_with("select-") || matches!(spec.op, "paint" | "image");
     let is_land = spec.layers.first().is_some_and(|layer| {
         matches!(layer.name, "height" | "filled") || layer.interpolation == Interpolation::AsSource
     });
     is_land && !is_mask && !matches!(spec.op, "height-above-drainage" | "label")
+}
+
+/// Whether an op makes heights from heights, such as an erosion.
+fn changes_heights(spec: &Spec) -> bool {
+    makes_heights(spec) || spec.op == "paint"
 }
 
 /// Parameters of an op for land in a range of heights: their defaults are for values of about 1, or for mountains.
@@ -156,6 +172,20 @@ mod tests {
         }
         assert!(!text_after("perlin", Some("soft"), range).contains("\"new\""));
         assert!(!text_after("terrace", None, None).contains("\"new\""));
+    }
+
+    #[test]
+    fn the_first_land_of_an_empty_recipe_is_its_terrain() {
+        let mut document = Document::empty("empty").unwrap();
+        assert!(document.is_valid() && !document.is_changed());
+        let add =
+            |document: &Document, name: &str, op: &str| edit(document.recipe(), name.into(), op, After::Nothing, None);
+        document.apply(&add(&document, "spots", "paint")).unwrap();
+        assert!(document.text().contains("height = 0\n"), "a mask is no land: {}", document.text());
+        document.apply(&add(&document, "hills", "fbm")).unwrap();
+        assert!(document.text().contains("height = \"hills\"\n"), "{}", document.text());
+        document.apply(&add(&document, "more", "perlin")).unwrap();
+        assert!(document.text().contains("height = \"hills\"\n"), "{}", document.text());
     }
 
     #[test]

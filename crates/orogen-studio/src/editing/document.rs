@@ -9,6 +9,10 @@ use orogen::{Error, ErrorKind, Registry, Result};
 use super::edit::{self, Edit};
 use super::history::History;
 
+/// The text of an empty recipe.
+const EMPTY: &str =
+    "orogen = 1\n\n[world]\nseed = 1\nsize = [10240, 10240]\ncell = 10\n\n[nodes]\n\n[outputs]\nheight = 0\n";
+
 /// A recipe that is being edited.
 #[derive(Debug, Clone)]
 pub struct Document {
@@ -45,6 +49,14 @@ impl Document {
             diagnostics: Vec::new(),
             revision: 0,
         })
+    }
+
+    /// A level world, to begin with.
+    ///
+    /// # Errors
+    /// None: a test opens it.
+    pub fn empty(title: &str) -> Result<Document> {
+        Document::new(title, EMPTY.into())
     }
 
     /// A copy of a preset.

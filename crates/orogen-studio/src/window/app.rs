@@ -37,6 +37,7 @@ use crate::studio::{self, Studio};
 enum Pending {
     Open(PathBuf),
     Preset(&'static str),
+    Empty,
     Unsaved(Unsaved),
     StartPage,
     Quit,
@@ -258,6 +259,7 @@ impl App {
                     self.open_made(Document::of_preset(preset));
                 }
             }
+            Pending::Empty => self.open_made(Document::empty(self.text("title.untitled"))),
             Pending::Unsaved(unsaved) => self.open_unsaved(&unsaved),
             Pending::StartPage => {
                 self.studio = None;
@@ -392,6 +394,7 @@ impl App {
         }
         match command {
             Command::New => self.leave(Pending::StartPage, context),
+            Command::Empty => self.leave(Pending::Empty, context),
             Command::Open => {
                 let at = self.studio.as_ref().and_then(|studio| studio.document.path());
                 self.dialogs.files = Some(FileDialog::new(Purpose::Open, at));

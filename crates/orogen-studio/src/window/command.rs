@@ -7,6 +7,7 @@ use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 #[allow(missing_docs, reason = "the list below tells what each is called")]
 pub enum Command {
     New,
+    Empty,
     Open,
     Save,
     SaveAs,
@@ -111,8 +112,9 @@ const CTRL: Modifiers = Modifiers::COMMAND;
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// All commands, in the order of their menus.
-pub static ALL: [Entry; 30] = [
+pub static ALL: [Entry; 31] = [
     with_keys(Command::New, "command.new", Menu::File, false, CTRL, Key::N),
+    with_keys(Command::Empty, "command.empty", Menu::File, false, CTRL_SHIFT, Key::N),
     with_keys(Command::Open, "command.open", Menu::File, false, CTRL, Key::O),
     with_keys(Command::Save, "command.save", Menu::File, true, CTRL, Key::S),
     with_keys(Command::SaveAs, "command.save_as", Menu::File, true, CTRL_SHIFT, Key::S),

@@ -16,6 +16,13 @@ const ROW: f32 = 15.0;
 const PICTURE: f32 = 56.0;
 const GAP: f32 = 5.0;
 
+/// The scales below which a box has no name, and nothing but its name.
+const NAMED: f32 = 0.22;
+const READABLE: f32 = 0.5;
+
+/// The smallest size of a name.
+const LEAST: f32 = 8.0;
+
 /// The color of a kind of box.
 fn color(kind: Kind) -> Color32 {
     match kind {
@@ -117,7 +124,7 @@ pub fn draw(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, 
         let place = title.right_top() + vec2(-10.0, 10.0) * zoom;
         painter.circle_filled(place, 4.0 * zoom, Color32::from_rgb(255, 214, 90));
     }
-    if zoom > 0.32 {
+    if zoom > NAMED {
         words(painter, visuals, block, rect, shown);
     }
     for k in 0..block.ports.len() {
@@ -132,7 +139,8 @@ fn words(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, sho
     let zoom = shown.zoom;
     let inside = painter.with_clip_rect(rect.intersect(painter.clip_rect()));
     let small = FontId::proportional(10.5 * zoom);
-    let (name, below) = ((7.0, 4.0), (7.0, 19.0));
+    let is_small = zoom < READABLE;
+    let (name, below) = (if is_small { (3.0, 2.0) } else { (7.0, 4.0) }, (7.0, 19.0));
     let write = |(x, y): (f32, f32), text: &str, font: FontId, color: Color32| {
         let mut job = LayoutJob::simple_singleline(text.to_owned(), font, color);
         // The end of a long name is left out, where it can be seen that it is.
@@ -140,7 +148,10 @@ fn words(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, sho
         let galley = inside.fonts_mut(|fonts| fonts.layout_job(job));
         inside.galley(rect.min + vec2(x, y) * zoom, galley, color);
     };
-    write(name, &block.title, FontId::proportional(13.0 * zoom), Color32::WHITE);
+    write(name, &block.title, FontId::proportional((13.0 * zoom).max(LEAST)), Color32::WHITE);
+    if is_small {
+        return;
+    }
     let count = block.nodes.len().to_string();
     let subtitle = if block.kind == Kind::Group { &count } else { &block.subtitle };
     if block.kind != Kind::Outside {

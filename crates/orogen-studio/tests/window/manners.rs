@@ -315,3 +315,22 @@ fn a_wire_takes_a_node_and_is_cut() {
     let text = studio(&harness).document.text().to_owned();
     assert!(text.contains("source = 0.0") && studio(&harness).document.is_valid(), "{text}");
 }
+
+#[test]
+fn a_land_begins_with_an_empty_project() {
+    let folder = TestFolder::new("studio-empty").unwrap();
+    let mut harness = window(&folder, None, Language::English);
+    harness.get_by_label("Empty project").click();
+    until(&mut harness, "the project", |app| app.studio().is_some());
+    until_done(&mut harness);
+    for op in ["fbm", "terrace"] {
+        press(&mut harness, Modifiers::COMMAND, Key::Space);
+        harness.event(Event::Text(op.into()));
+        harness.run_steps(3);
+        press(&mut harness, Modifiers::NONE, Key::Enter);
+        let text = studio(&harness).document.text();
+        assert!(text.contains(&format!("height = \"{op}\"")), "{text}");
+        until_done(&mut harness);
+    }
+    assert!(studio(&harness).failure.is_none() && harness.query_by_label("output box height").is_some());
+}
