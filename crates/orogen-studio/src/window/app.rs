@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 use eframe::egui::{self, Context, Panel, Ui};
 use orogen::gpu::Gpu;
@@ -525,11 +526,16 @@ impl App {
 
     /// Closes the window if its graphics device is lost, and reports errors of the device.
     fn look_at_device(&mut self, context: &Context, frame: &eframe::Frame) {
-        if self.lose_device.is_some_and(|after| context.input(|input| input.time) > after)
-            && let Some(state) = frame.wgpu_render_state()
-        {
-            state.device.destroy();
-            self.lose_device = None;
+        if let Some(after) = self.lose_device {
+            let left = after - context.input(|input| input.time);
+            match frame.wgpu_render_state() {
+                Some(state) if left < 0.0 => {
+                    state.device.destroy();
+                    self.lose_device = None;
+                }
+                // An idle window is not drawn.
+                _ => context.request_repaint_after(Duration::from_millis(100)),
+            }
         }
         if self.watch.lost().is_some() {
             self.may_close = true;
