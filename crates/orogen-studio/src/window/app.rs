@@ -1,5 +1,7 @@
 //! The application: lays out the panels, and carries out their actions.
 
+mod commands;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -9,13 +11,12 @@ use orogen::gpu::Gpu;
 use orogen::{Budget, Options, Result, Session};
 
 use super::action::Action;
-use super::command::{self, Command};
+use super::command;
 use super::device::DeviceWatch;
-use super::dialogs::{self, CommandPalette, Decision, FileDialog};
+use super::dialogs::{self, Decision, FileDialog};
 use super::export_dialog::ExportDialog;
 use super::open_dialogs::OpenDialogs;
 use super::panels::{Below, Panels, Shown, View};
-use super::purpose::Purpose;
 use super::ramp_editor::RampEditor;
 use super::recovery_dialog::{self, RecoveryDialog};
 use super::relief::Ability;
@@ -23,8 +24,6 @@ use super::relief_panel::ShownView;
 use super::{fonts, menu, theme};
 use crate::catalogue::Language;
 use crate::editing::document::Document;
-use crate::editing::edit::Edit;
-use crate::editing::groups;
 use crate::file_watch::FileWatch;
 use crate::preview::coloring::Coloring;
 use crate::preview::colors::palette;
@@ -387,119 +386,6 @@ impl App {
                 false
             }
         }
-    }
-
-    fn command(&mut self, command: Command, context: &Context) {
-        if !menu::is_enabled(command, self.studio.as_ref()) {
-            return;
-        }
-        match command {
-            Command::New => self.leave(Pending::StartPage, context),
-            Command::Empty => self.leave(Pending::Empty, context),
-            Command::Open => {
-                let at = self.studio.as_ref().and_then(|studio| studio.document.path());
-                self.dialogs.files = Some(FileDialog::new(Purpose::Open, at));
-            }
-            Command::Quit => self.leave(Pending::Quit, context),
-            Command::CommandPalette => self.dialogs.palette = Some(CommandPalette::default()),
-            Command::Shortcuts => self.dialogs.has_shortcuts = true,
-            Command::About => {
-                let text = self.language.fill("about.text", &[("version", env!("CARGO_PKG_VERSION"))]);
-                self.dialogs.message = Some((self.text("command.about").into(), text));
-            }
-            Command::ShowRelief => self.panels.view = View::Relief,
-            Command::ShowMap => self.panels.view = View::Map,
-            Command::ShowGraph => self.show_below(Below::Graph),
-            Command::ShowText => self.show_below(Below::Text),
-            Command::ShowAnalysis => self.show_below(Below::Analysis),
-            Command::ShowReal => self.show_below(Below::Real),
-            Command::ShowVariants => self.show_below(Below::Variants),
-            Command::WholeView => {
-                self.panels.show_whole();
-            }
-            Command::PanelBelow => {
-                self.settings.has_below = !self.settings.has_below;
-                self.remember();
-            }
-            Command::Inspector => {
-                self.settings.has_inspector = !self.settings.has_inspector;
-                self.remember();
-            }
-            Command::ViewAlone => {
-                let is_alone = !self.settings.has_below && !self.settings.has_inspector;
-                (self.settings.has_below, self.settings.has_inspector) = (is_alone, is_alone);
-                self.remember();
-            }
-            Command::Thumbnails => {
-                self.settings.thumbnails = !self.settings.thumbnails;
-                self.remember();
-                if let Some(studio) = &mut self.studio {
-                    studio.has_thumbnails = self.settings.thumbnails;
-                }
-            }
-            other => self.document_command(other),
-        }
-    }
-
-    fn document_command(&mut self, command: Command) {
-        let Some(studio) = &mut self.studio else { return };
-        let selected = studio.selected.clone();
-        match command {
-            Command::Save => match studio.document.path().map(Path::to_path_buf) {
-                Some(path) => drop(self.save(&path)),
-                None => self.save_as(),
-            },
-            Command::SaveAs => self.save_as(),
-            Command::Export => self.dialogs.export = ExportDialog::new(studio, &self.panels.relief.shown(studio)),
-            Command::Undo => drop(studio.undo()),
-            Command::Redo => drop(studio.redo()),
-            Command::NextSeed => {
-                let seed = studio.document.recipe().world.seed;
-                let next = Edit::Seed(if seed >= i64::MAX as u64 { 0 } else { seed + 1 });
-                let edited = studio.edit(&next);
-                // Each seed is a separate step.
-                studio.document.end_gesture();
-                self.say_failure(edited);
-            }
-            Command::AddNode => {
-                self.show_below(Below::Graph);
-                self.panels.graph.open_search();
-            }
-            Command::Rename => {
-                let group = groups::of_selection(studio.document.recipe(), &selected);
-                if let Some(name) = group.as_ref().or(selected.first()) {
-                    self.settings.has_inspector = true;
-                    self.panels.inspector.rename(name);
-                }
-            }
-            Command::Delete | Command::Duplicate | Command::Group | Command::Ungroup => {
-                let edit = match command {
-                    Command::Delete => Edit::Delete(selected),
-                    Command::Duplicate => Edit::Duplicate(selected),
-                    Command::Ungroup => Edit::Ungroup(studio.selected_group().unwrap_or_default()),
-                    _ => {
-                        let outer = groups::common(selected.iter().map(String::as_str));
-                        let name = groups::free(studio.document.recipe(), outer, "group");
-                        Edit::Group { nodes: selected, name }
-                    }
-                };
-                let edited = studio.edit(&edit);
-                self.say_failure(edited);
-            }
-            _ => {}
-        }
-    }
-
-    /// Shows a panel below the view.
-    fn show_below(&mut self, below: Below) {
-        self.panels.below = below;
-        self.settings.has_below = true;
-    }
-
-    fn save_as(&mut self) {
-        let Some(studio) = &self.studio else { return };
-        let name = PathBuf::from(format!("{}.toml", studio.document.title()));
-        self.dialogs.files = Some(FileDialog::new(Purpose::Save, studio.document.path().or(Some(&name))));
     }
 
     /// Opens files that are dropped onto the window.
