@@ -1,6 +1,7 @@
 //! New nodes: what they read, what reads them, and parameters that suit the land.
 
 use orogen::declare::{Input, Spec};
+use orogen::grid::contour::round_interval;
 use orogen::layer::Interpolation;
 use orogen::node::Node;
 use orogen::recipe::Recipe;
@@ -9,6 +10,9 @@ use orogen::world::HEIGHT;
 
 use super::drawing;
 use super::edit::{Edit, Reader};
+
+/// Maximum number of steps within the relief of a land.
+const LEVELS: usize = 20;
 
 /// Where a new node goes.
 #[derive(Debug, Clone, Copy)]
@@ -108,7 +112,7 @@ fn suiting(op: &str, [low, high]: [f64; 2]) -> Vec<(&'static str, Value)> {
     if !(relief.is_finite() && relief > 0.0) {
         return Vec::new();
     }
-    let step = round(relief / 10.0);
+    let step = round_interval(relief, LEVELS);
     // Round numbers around the range.
     let [low, high] = [(low / step).floor() * step, (high / step).ceil() * step];
     let pair = |a: f64, b: f64| drawing::numbers(&[a, b]);
@@ -123,12 +127,6 @@ fn suiting(op: &str, [low, high]: [f64; 2]) -> Vec<(&'static str, Value)> {
         "curve" => vec![("points", drawing::value(&[[low, low], [high, high]]))],
         _ => Vec::new(),
     }
-}
-
-/// The largest number 1, 2 or 5 times a power of ten that is at most `x`.
-fn round(x: f64) -> f64 {
-    let power = libm::pow(10.0, libm::log10(x).floor());
-    [5.0, 2.0].into_iter().map(|digit| digit * power).find(|number| *number <= x).unwrap_or(power)
 }
 
 #[cfg(test)]
@@ -217,9 +215,6 @@ mod tests {
         // Without a picture, or with level land, they have their defaults.
         for range in [None, Some([3.0, 3.0]), Some([f64::INFINITY, f64::NEG_INFINITY])] {
             assert!(!text_after("terrace", Some("soft"), range).contains("step"));
-        }
-        for (x, expect) in [(1.0, 1.0), (190.2, 100.0), (0.049, 0.02), (5.0, 5.0), (99.9, 50.0)] {
-            assert!((round(x) - expect).abs() < 1e-12, "{x}");
         }
     }
 }

@@ -180,22 +180,9 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
         Edit::Connect { node: name, input, source } => {
             known(name)?;
             written(name)?;
-            let own = node(&mut document, name).ok_or_else(|| missing(&format!("node `{name}`")))?;
-            let key = written_key(own.get("op").and_then(Item::as_str), input, |key| own.contains_key(key));
-            match source {
-                Input::None => drop(own.remove(&key)),
-                Input::Node(source) => set(own, &key, source.as_str().into()),
-                Input::Value(value) => set(own, &key, (*value).into()),
-            }
+            connect(&mut document, &Reader::Input { node: name.clone(), key: input.clone() }, source)?;
         }
-        Edit::Output { name, source } => {
-            let outputs = top(&mut document, "outputs").ok_or_else(|| missing("[outputs]"))?;
-            match source {
-                Input::None => drop(outputs.remove(name)),
-                Input::Node(source) => set(outputs, name, source.as_str().into()),
-                Input::Value(value) => set(outputs, name, (*value).into()),
-            }
-        }
+        Edit::Output { name, source } => connect(&mut document, &Reader::Output(name.clone()), source)?,
         Edit::Colors { ground, index, colors } => set_colors(&mut document, *ground, *index, colors)?,
         Edit::Add { name, op, inputs, params, readers } => {
             add(&mut document, name, op, inputs)?;
@@ -205,18 +192,10 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
                 set(own, key, value);
             }
             for reader in readers {
-                match reader {
-                    Reader::Output(output) => {
-                        let outputs = top(&mut document, "outputs").ok_or_else(|| missing("[outputs]"))?;
-                        set(outputs, output, name.as_str().into());
-                    }
-                    Reader::Input { node: reader, key } => {
-                        written(reader)?;
-                        let own = node(&mut document, reader).ok_or_else(|| missing(&format!("node `{reader}`")))?;
-                        let key = written_key(own.get("op").and_then(Item::as_str), key, |key| own.contains_key(key));
-                        set(own, &key, name.as_str().into());
-                    }
+                if let Reader::Input { node: reader, .. } = reader {
+                    written(reader)?;
                 }
+                connect(&mut document, reader, &Input::Node(name.clone()))?;
             }
         }
         Edit::Stroke { node: name, placement, at, stroke } => {
@@ -255,6 +234,24 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
         }
     }
     Ok(document.to_string())
+}
+
+/// Makes a reader read a node, a number, or nothing.
+fn connect(document: &mut DocumentMut, reader: &Reader, source: &Input) -> Result<(), String> {
+    let (own, key) = match reader {
+        Reader::Output(name) => (top(document, "outputs").ok_or("the text has no [outputs]")?, name.clone()),
+        Reader::Input { node: name, key } => {
+            let own = node(document, name).ok_or_else(|| format!("the text has no node `{name}`"))?;
+            let key = written_key(own.get("op").and_then(Item::as_str), key, |key| own.contains_key(key));
+            (own, key)
+        }
+    };
+    match source {
+        Input::None => drop(own.remove(&key)),
+        Input::Node(source) => set(own, &key, source.as_str().into()),
+        Input::Value(value) => set(own, &key, (*value).into()),
+    }
+    Ok(())
 }
 
 /// The key of an input or parameter in the text of a node: an old alias if that is used.

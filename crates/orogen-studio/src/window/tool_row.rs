@@ -3,7 +3,7 @@
 use eframe::egui::{ScrollArea, Ui};
 
 /// The height below which tools have one row, which can be scrolled.
-const LOW: f32 = 300.0;
+const LOW: f32 = 200.0;
 
 /// Shows the tools of a view in rows.
 pub fn show(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
