@@ -10,8 +10,8 @@ use crate::failure::{internal, refused};
 /// An array of heights.
 pub type Heights<'py> = PyReadonlyArray2<'py, f32>;
 
-/// The samples of an array as a grid; row 0 is the northernmost. Cells are `cell` metres apart.
-pub fn grid(heights: &Heights<'_>, cell: f64) -> PyResult<Grid> {
+/// The window and the samples of an array, by rows from the north. Cells are `cell` metres apart.
+pub fn samples<'a>(heights: &'a Heights<'_>, cell: f64) -> PyResult<(Window, &'a [f32])> {
     let py = heights.py();
     let &[height, width] = heights.shape() else { return Err(internal(py, "an array without two dimensions")) };
     if !(cell.is_finite() && cell > 0.0) {
@@ -24,8 +24,14 @@ pub fn grid(heights: &Heights<'_>, cell: f64) -> PyResult<Grid> {
         return Err(refused(py, &format!("an array can have at most 2^32 samples, not {height} x {width}")));
     }
     let data = heights.as_slice().map_err(|_| internal(py, "an array that is not contiguous"))?;
-    let grid = Grid::from_data(Window::new(width, height, cell), data.to_vec());
-    grid.ok_or_else(|| internal(py, "an array with another number of samples than its shape"))
+    Ok((Window::new(width, height, cell), data))
+}
+
+/// The samples of an array as a grid; row 0 is the northernmost. Cells are `cell` metres apart.
+pub fn grid(heights: &Heights<'_>, cell: f64) -> PyResult<Grid> {
+    let (window, data) = samples(heights, cell)?;
+    let grid = Grid::from_data(window, data.to_vec());
+    grid.ok_or_else(|| internal(heights.py(), "an array with another number of samples than its shape"))
 }
 
 /// The samples of a grid as an array, without a copy.

@@ -8,6 +8,7 @@ mod erosion;
 mod failure;
 mod hydrology;
 mod jobs;
+mod layer;
 mod noise;
 mod options;
 mod output;
@@ -40,6 +41,8 @@ mod _orogen {
     use super::hydrology::{above_drainage, accumulate, breach, fill, flow_direction, lakes, stream_order, watersheds};
     #[pymodule_export]
     use super::jobs::write;
+    #[pymodule_export]
+    use super::layer::layer;
     #[pymodule_export]
     use super::noise::noise;
     #[pymodule_export]

@@ -367,15 +367,19 @@ impl World {
 
     /// The channels of a layer that is derived from the heights.
     fn derived(&self, layer: &str, window: &Window, options: &Options, progress: &Progress) -> Result<Vec<Grid>> {
-        let world = self.prepared(|recipe| list::prepare(recipe, layer, options))?;
-        if world.unit(layer).is_ok() {
-            return world.grids(&[layer], window, progress);
-        }
-        let mut source = LayerSource::new(&world, layer, *window, progress)?;
-        let reserved = (window.len() as u64).saturating_mul(4 * source.channels() as u64);
-        let _held = world.budget().reserve(reserved)?;
-        source.whole().map_err(|cause| file::explain("make", Path::new(layer), &cause))
+        derived(&self.prepared(|recipe| list::prepare(recipe, layer, options))?, layer, window, progress)
     }
+}
+
+/// The channels of a layer that is derived from the heights of a prepared world.
+pub(crate) fn derived(world: &orogen::World, layer: &str, window: &Window, progress: &Progress) -> Result<Vec<Grid>> {
+    if world.unit(layer).is_ok() {
+        return world.grids(&[layer], window, progress);
+    }
+    let mut source = LayerSource::new(world, layer, *window, progress)?;
+    let reserved = (window.len() as u64).saturating_mul(4 * source.channels() as u64);
+    let _held = world.budget().reserve(reserved)?;
+    source.whole().map_err(|cause| file::explain("make", Path::new(layer), &cause))
 }
 
 /// A layer that is prepared for many points.
@@ -505,6 +509,6 @@ fn positions<'a>(array: &'a PyReadonlyArray1<'_, f64>) -> PyResult<&'a [f64]> {
     array.as_slice().map_err(|_| internal(array.py(), "an array that is not contiguous"))
 }
 
-fn request(message: String) -> Error {
+pub(crate) fn request(message: String) -> Error {
     Error::new(ErrorKind::Request, message)
 }

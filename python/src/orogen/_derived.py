@@ -17,25 +17,7 @@ def _layer(
 ) -> F32:
     """A derived layer of the world of these heights; missing ones are interpolated for their neighbors."""
     data = _heights(heights, nodata)
-    # The native world tells no warnings: filters of warnings cannot be changed while threads run.
-    world = _orogen.World(
-        source=None,
-        text=None,
-        heights=data,
-        cell=cell,
-        parameters=[],
-        seed=None,
-        crs=None,
-        origin=None,
-        threads=None,
-        memory=None,
-        cache=None,
-    )
-    part, _ = world.view(((0, 0, data.shape[1], data.shape[0]), None, None, None))
     with listener(progress) as heard:
-        channels = world.read([layer], part, dict(options), heard)
+        channels = _orogen.layer(data, layer, cell, dict(options), heard)
     made: F32 = channels[0] if len(channels) == 1 else np.stack(channels)
-    missing = np.isnan(data)
-    if missing.any():
-        made[..., missing] = np.nan
     return made

@@ -11,9 +11,8 @@
 //! This form computes no angle per sample. 1 is full illumination; level ground gets the sine of the altitude. A
 //! missing sample gives 0.
 
-use super::slope::{Gradient, gradients_between, inner};
+use super::slope::{Gradient, inner, values_between};
 use crate::grid::Grid;
-use orogen_simd::{Body, Simd, dispatch};
 
 /// The direction of the light, prepared for evaluation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,39 +87,8 @@ pub fn hillshade(grid: &Grid, light: &Light) -> Grid {
 
 /// The hillshade of the inner samples of three adjacent rows, from the north. `out` is shorter than the rows by two.
 pub fn hillshade_between(rows: [&[f32]; 3], cell: f64, light: &Light, out: &mut [f32]) {
-    if !dispatch(Sound { rows, cell, light, out: &mut *out }) {
-        gradients_between(rows, cell, |i, gradient| out[i] = light.on(gradient));
-    }
-}
-
-/// Computes the hillshade of a row under the assumption that no sample is missing; returns whether this is true.
-struct Sound<'a> {
-    rows: [&'a [f32]; 3],
-    cell: f64,
-    light: &'a Light,
-    out: &'a mut [f32],
-}
-
-impl Body for Sound<'_> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn run<S: Simd>(self, _: S) -> bool {
-        let n = self.out.len();
-        let [[a, b, c], [d, e, f], [g, h, k]] = self.rows.map(|row| [&row[..n], &row[1..=n], &row[2..n + 2]]);
-        let (scale, light) = ((1.0 / (8.0 * self.cell)) as f32, *self.light);
-        let mut missing = 0u32;
-        for (i, out) in self.out.iter_mut().enumerate() {
-            // The same sums as in `gradients_between`, in the same order, so that the bits are the same.
-            let east = ((c[i] - a[i]) + 2.0 * (f[i] - d[i]) + (k[i] - g[i])) * scale;
-            let north = ((a[i] - g[i]) + 2.0 * (b[i] - h[i]) + (c[i] - k[i])) * scale;
-            *out = light.on(Gradient { east, north });
-            // A value that is not finite gives NaN when multiplied by 0.
-            let zero = ((east + north) + e[i]) * 0.0;
-            missing |= u32::from(zero != 0.0);
-        }
-        missing == 0
-    }
+    let light = *light;
+    values_between(rows, cell, out, move |gradient| light.on(gradient));
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@
 //! with the center.
 
 use crate::grid::{Grid, Window};
+use orogen_simd::{Body, Simd, dispatch};
 
 /// The gradient at one sample, in metres per metre.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,9 +28,17 @@ pub struct Gradient {
 
 impl Gradient {
     /// The steepest rise per metre: the tangent of the slope angle.
+    #[inline(always)]
     #[must_use]
     pub fn steepness(&self) -> f32 {
         (self.east * self.east + self.north * self.north).sqrt()
+    }
+
+    /// The slope angle in degrees, 0 to 90.
+    #[inline(always)]
+    #[must_use]
+    pub fn degrees(&self) -> f32 {
+        libm::atanf(self.steepness()).to_degrees()
     }
 
     /// The upward unit normal: east, north and up.
@@ -53,6 +62,44 @@ pub fn gradients_between(rows: [&[f32]; 3], cell: f64, mut each: impl FnMut(usiz
         let gradient = Gradient { east, north };
         // One test covers the common case. Missing samples and overflowing differences are handled separately.
         each(i, if (east + north).is_finite() && m[1].is_finite() { gradient } else { repaired([n, m, s], cell) });
+    }
+}
+
+/// Fills `out` with a value of the gradient at each inner sample of three adjacent rows, given from north to south. `out`
+/// is shorter than the rows by two.
+pub fn values_between(rows: [&[f32]; 3], cell: f64, out: &mut [f32], value: impl Fn(Gradient) -> f32 + Copy) {
+    if !dispatch(Finite { rows, cell, value, out: &mut *out }) {
+        gradients_between(rows, cell, |i, gradient| out[i] = value(gradient));
+    }
+}
+
+/// Computes the values of a row under the assumption that no sample is missing; returns whether this is true.
+struct Finite<'a, V> {
+    rows: [&'a [f32]; 3],
+    cell: f64,
+    value: V,
+    out: &'a mut [f32],
+}
+
+impl<V: Fn(Gradient) -> f32 + Copy> Body for Finite<'_, V> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) -> bool {
+        let n = self.out.len();
+        let [[a, b, c], [d, e, f], [g, h, k]] = self.rows.map(|row| [&row[..n], &row[1..=n], &row[2..n + 2]]);
+        let (scale, value) = ((1.0 / (8.0 * self.cell)) as f32, self.value);
+        let mut missing = 0u32;
+        for (i, out) in self.out.iter_mut().enumerate() {
+            // The same sums as in `gradients_between`, in the same order, so that the bits are the same.
+            let east = ((c[i] - a[i]) + 2.0 * (f[i] - d[i]) + (k[i] - g[i])) * scale;
+            let north = ((a[i] - g[i]) + 2.0 * (b[i] - h[i]) + (c[i] - k[i])) * scale;
+            *out = value(Gradient { east, north });
+            // A value that is not finite gives NaN when multiplied by 0.
+            let zero = ((east + north) + e[i]) * 0.0;
+            missing |= u32::from(zero != 0.0);
+        }
+        missing == 0
     }
 }
 
@@ -103,10 +150,19 @@ pub fn from_gradients(grid: &Grid, value: impl Fn(Gradient) -> f32) -> Grid {
     let mut out = Grid::filled(window, 0.0);
     for j in 0..window.height {
         let rows = [grid.row(j), grid.row(j + 1), grid.row(j + 2)];
-        let row = out.row_mut(j);
-        gradients_between(rows, window.cell, |i, gradient| row[i] = value(gradient));
+        values_between(rows, window.cell, out.row_mut(j), &value);
     }
     out
+}
+
+/// The slope angles in degrees, 0 to 90, of the inner samples of three adjacent rows, like [`values_between`].
+pub fn degrees_between(rows: [&[f32]; 3], cell: f64, out: &mut [f32]) {
+    values_between(rows, cell, out, |gradient| gradient.degrees());
+}
+
+/// The slopes, rise over run, of the inner samples of three adjacent rows, like [`values_between`].
+pub fn steepness_between(rows: [&[f32]; 3], cell: f64, out: &mut [f32]) {
+    values_between(rows, cell, out, |gradient| gradient.steepness());
 }
 
 /// The slope, rise over run, at every sample of `grid` except its border of one sample.
@@ -118,7 +174,7 @@ pub fn steepness(grid: &Grid) -> Grid {
 /// The slope angle in degrees, 0 to 90, at every sample of `grid` except its border of one sample.
 #[must_use]
 pub fn slope_degrees(grid: &Grid) -> Grid {
-    from_gradients(grid, |gradient| libm::atanf(gradient.steepness()).to_degrees())
+    from_gradients(grid, |gradient| gradient.degrees())
 }
 
 /// The window without a border of one sample; possibly empty.

@@ -56,7 +56,7 @@ impl Filter for SelectAspect {
                 let off = (aspect_of(gradient) - direction).abs() % 360.0;
                 // The smaller of the two angles. Level ground, whose aspect is NaN, is not selected.
                 let off = if off > 180.0 { 360.0 - off } else { off };
-                row[i] = directions.of(off) * slopes.of(libm::atanf(gradient.steepness()).to_degrees());
+                row[i] = directions.of(off) * slopes.of(gradient.degrees());
             });
             Ok(())
         })

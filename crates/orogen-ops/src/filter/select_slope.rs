@@ -49,7 +49,7 @@ impl Filter for SelectSlope {
         parallel::try_for_each(out.data_mut().chunks_mut(window.width.max(1)).enumerate(), |(j, row)| {
             context.progress.step(1.0)?;
             gradients_between([source.row(j), source.row(j + 1), source.row(j + 2)], window.cell, |i, gradient| {
-                row[i] = selection.of(libm::atanf(gradient.steepness()).to_degrees());
+                row[i] = selection.of(gradient.degrees());
             });
             Ok(())
         })

@@ -2,7 +2,7 @@
 
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Filter, GridInputs, WorldParams};
-use orogen_grid::analysis::slope::{Gradient, gradients_between};
+use orogen_grid::analysis::slope::{degrees_between, steepness_between, values_between};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::parallel;
@@ -54,19 +54,21 @@ impl Filter for Slope {
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let angle = |gradient: Gradient| match self.unit {
-            SlopeUnit::Degrees => libm::atanf(gradient.steepness()).to_degrees(),
-            SlopeUnit::Ratio => gradient.steepness(),
-        };
-        let values: [&(dyn Fn(Gradient) -> f32 + Sync); 3] =
-            [&angle, &|gradient| gradient.east, &|gradient| -gradient.north];
+        let values: [fn(&Slope, [&[f32]; 3], f64, &mut [f32]); 3] = [
+            |op, rows, cell, row| match op.unit {
+                SlopeUnit::Degrees => degrees_between(rows, cell, row),
+                SlopeUnit::Ratio => steepness_between(rows, cell, row),
+            },
+            |_, rows, cell, row| values_between(rows, cell, row, |gradient| gradient.east),
+            |_, rows, cell, row| values_between(rows, cell, row, |gradient| -gradient.north),
+        ];
         for (layer, value) in out.iter_mut().zip(values) {
             let Some(layer) = layer.as_mut().filter(|_| !window.is_empty()) else { continue };
             context.progress.expect(window.height as f64);
             parallel::try_for_each(layer.data_mut().chunks_mut(window.width).enumerate(), |(j, row)| {
                 context.progress.step(1.0)?;
                 let rows = [source.row(j), source.row(j + 1), source.row(j + 2)];
-                gradients_between(rows, window.cell, |i, gradient| row[i] = value(gradient));
+                value(self, rows, window.cell, row);
                 Ok(())
             })?;
         }

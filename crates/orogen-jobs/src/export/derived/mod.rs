@@ -2,6 +2,7 @@
 
 pub mod albedo;
 pub(crate) mod appended;
+pub mod array;
 pub(crate) mod aspect;
 pub(crate) mod cover;
 pub(crate) mod curvature;
