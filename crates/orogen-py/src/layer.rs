@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use numpy::PyArray2;
-use orogen::export::derived::{array as direct, list};
+use numpy::{PyArray2, PyArrayMethods, PyReadwriteArray2};
+use orogen::export::derived::array::ArrayLayer;
+use orogen::export::derived::list;
 use orogen::io::dem::PreparedDem;
 use orogen::io::dem::prepared::DEFAULT_MEMORY;
 use orogen::io::format::dem::Dem;
@@ -14,6 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::array::{Heights, array, samples};
+use crate::failure::raised;
 use crate::options::{of_keywords, of_work};
 use crate::run::run;
 use crate::world::{derived, request};
@@ -32,10 +34,18 @@ pub fn layer<'py>(
 ) -> PyResult<Vec<Bound<'py, PyArray2<f32>>>> {
     let options = of_keywords(&of_work("layer"), options)?;
     let (window, heights) = samples(&heights, cell)?;
-    let made = run(py, progress, |progress| match direct::layer(layer, &window, heights, &options, progress)? {
-        Some(made) => Ok(made),
-        None => by_world(layer, &window, heights, &options, progress),
-    })?;
+    let direct =
+        py.detach(|| ArrayLayer::new(layer, &window, heights, &options)).map_err(|error| raised(py, &error))?;
+    if let Some(direct) = direct {
+        let zeros = || PyArray2::zeros(py, [window.height, window.width], false);
+        let made: Vec<Bound<'py, PyArray2<f32>>> = (0..direct.channels()).map(|_| zeros()).collect();
+        let mut lent: Vec<PyReadwriteArray2<'py, f32>> = made.iter().map(|array| array.readwrite()).collect();
+        let out = lent.iter_mut().filter_map(|array| array.as_slice_mut().ok()).collect();
+        run(py, progress, |progress| direct.fill(out, progress))?;
+        drop(lent);
+        return Ok(made);
+    }
+    let made = run(py, progress, |progress| by_world(layer, &window, heights, &options, progress))?;
     made.into_iter().map(|grid| array(py, grid)).collect()
 }
 

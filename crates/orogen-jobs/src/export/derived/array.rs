@@ -1,7 +1,7 @@
 //! Derived layers of heights in memory, without a world.
 //!
 //! A filter of a few operations a sample takes less time than a world needs to bring it the samples: a plan, tiles with
-//! halos, their copies. Over an array the filter is applied at once.
+//! halos, their copies. Over an array the filter is applied to the samples themselves.
 
 use std::ops::RangeInclusive;
 
@@ -10,57 +10,131 @@ use super::list;
 use crate::options::Options;
 use orogen_engine::declare::Input;
 use orogen_engine::field::Dem;
+use orogen_engine::node::Node;
 use orogen_engine::op::{Context, GridInputs, Op};
-use orogen_engine::recipe::document::{NamedNode, Recipe, WorldSpec};
+use orogen_engine::recipe::document::{Recipe, WorldSpec};
 use orogen_engine::world::HEIGHT;
 use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::analysis::slope::beyond;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
+use orogen_grid::parallel;
 use orogen_grid::progress::Progress;
 
 /// Cells in metres that need no check.
 const CELLS: RangeInclusive<f64> = 1e-3..=1e6;
 
-/// The channels of a layer that one filter makes of heights and of the samples next to them, with the bits that a world
-/// of these heights has. `heights` are those of `window`, by rows from the north. `None` if the layer needs more than
-/// that, or if some heights are missing: a world fills them.
-///
-/// # Errors
-/// If an option does not belong to the layer or is invalid, or if the work is cancelled.
-pub fn layer(
-    name: &str,
-    window: &Window,
-    heights: &[f32],
-    options: &Options,
-    progress: &Progress,
-) -> Result<Option<Vec<Grid>>> {
-    if !CELLS.contains(&window.cell) || window.is_empty() || heights.len() != window.len() {
-        return Ok(None);
-    }
-    let size = [window.width, window.height].map(|samples| samples as f64 * window.cell);
-    let mut recipe = Recipe::new(WorldSpec::default().with_size(Some(size)).with_cell(window.cell));
-    recipe.add("place", Dem::default()).output(HEIGHT, "place");
-    list::prepare(&mut recipe, name, options)?;
-    let Some((named, layers)) = only_filter(&recipe, name) else { return Ok(None) };
-    let Op::Filter(filter) = named.node.op() else { return Ok(None) };
-    let count = FiniteCount::of(heights);
-    if filter.halo(window.cell) != 1 || count.finite < count.samples {
-        return Ok(None);
-    }
-    let wide = surrounded(window, heights);
-    let wanted = |layer: &str| layers.iter().any(|name| name.strip_prefix(&named.name) == Some(&format!(".{layer}")));
-    let declared = filter.spec().layers;
-    let mut made: Vec<Option<Grid>> =
-        declared.iter().map(|layer| wanted(layer.name).then(|| Grid::filled(*window, 0.0))).collect();
-    let context = Context { world_params: &recipe.world.world_params(), progress, observer: None };
-    filter.apply(&GridInputs::new(filter.spec(), &[Some(&wide)]), window, &mut made, &context)?;
-    Ok(Some(made.into_iter().flatten().collect()))
+/// Rows that are made at once: with their halo they stay in the cache.
+const ROWS: usize = 64;
+
+/// A layer that one filter makes of heights and of the samples next to them, with the bits that a world of these heights
+/// has.
+pub struct ArrayLayer<'a> {
+    window: Window,
+    heights: &'a [f32],
+    /// The prepared recipe of such a world.
+    recipe: Recipe,
+    /// The layers of its last node that are read.
+    wanted: Vec<bool>,
 }
 
-/// The filter that makes a layer of a prepared recipe from heights that are extrapolated by one sample, and the names of
-/// the layers that are read.
-fn only_filter<'a>(recipe: &'a Recipe, name: &str) -> Option<(&'a NamedNode, Vec<String>)> {
+impl<'a> ArrayLayer<'a> {
+    /// A layer of the heights of `window`, by rows from the north. `None` if it needs more than one filter and a halo of
+    /// one sample, or if some heights are missing: a world fills them.
+    ///
+    /// # Errors
+    /// If an option does not belong to the layer or is invalid.
+    pub fn new(name: &str, window: &Window, heights: &'a [f32], options: &Options) -> Result<Option<ArrayLayer<'a>>> {
+        if !CELLS.contains(&window.cell) || window.is_empty() || heights.len() != window.len() {
+            return Ok(None);
+        }
+        let size = [window.width, window.height].map(|samples| samples as f64 * window.cell);
+        let mut recipe = Recipe::new(WorldSpec::default().with_size(Some(size)).with_cell(window.cell));
+        recipe.add("place", Dem::default()).output(HEIGHT, "place");
+        list::prepare(&mut recipe, name, options)?;
+        let wanted = wanted(&recipe, name).filter(|_| {
+            let count = FiniteCount::of(heights);
+            count.finite == count.samples
+        });
+        Ok(wanted.map(|wanted| ArrayLayer { window: *window, heights, recipe, wanted }))
+    }
+
+    /// Number of channels.
+    #[must_use]
+    pub fn channels(&self) -> usize {
+        self.wanted.iter().filter(|wanted| **wanted).count()
+    }
+
+    /// Fills one slice for each channel, each as long as the heights.
+    ///
+    /// # Errors
+    /// If the work is cancelled.
+    pub fn fill(&self, out: Vec<&mut [f32]>, progress: &Progress) -> Result<()> {
+        let Some(Op::Filter(filter)) = self.recipe.nodes().last().map(|named| named.node.op()) else { return Ok(()) };
+        let (width, world_params) = (self.window.width, self.recipe.world.world_params());
+        let mut bands: Vec<Vec<&mut [f32]>> = Vec::new();
+        for channel in out {
+            for (k, rows) in channel.chunks_mut(ROWS * width).enumerate() {
+                if bands.len() == k {
+                    bands.push(Vec::new());
+                }
+                bands[k].push(rows);
+            }
+        }
+        progress.expect(bands.len() as f64);
+        parallel::try_for_each(bands.into_iter().enumerate(), |(k, channels)| {
+            progress.step(1.0)?;
+            let first = k * ROWS;
+            let height = ROWS.min(self.window.height - first);
+            let band = Window { y: self.window.y + first as i64, height, ..self.window };
+            let wide = self.surrounded(&band, first);
+            let mut made: Vec<Option<Grid>> =
+                self.wanted.iter().map(|wanted| wanted.then(|| Grid::filled(band, 0.0))).collect();
+            let context = Context { world_params: &world_params, progress: &Progress::none(), observer: None };
+            filter.apply(&GridInputs::new(filter.spec(), &[Some(&wide)]), &band, &mut made, &context)?;
+            channels.into_iter().zip(made.iter().flatten()).for_each(|(to, made)| to.copy_from_slice(made.data()));
+            Ok(())
+        })
+    }
+
+    /// The heights of a band and one sample around them, as the world of an array has them: to the west and the north
+    /// they are extrapolated; to the east and the south, where the last samples have cells that are still inside the
+    /// world, they are repeated. `first` is the first row of the band.
+    fn surrounded(&self, band: &Window, first: usize) -> Grid {
+        let (wide, last) = (band.grown(1), self.window.height - 1);
+        let mut data = Vec::with_capacity(wide.len());
+        let row = |j: usize, data: &mut Vec<f32>| {
+            let row = &self.heights[j.min(last) * self.window.width..][..self.window.width];
+            let end = row[row.len() - 1];
+            data.push(beyond(row[0], row.get(1).copied().unwrap_or(end)));
+            data.extend_from_slice(row);
+            data.push(end);
+        };
+        match first.checked_sub(1) {
+            Some(above) => row(above, &mut data),
+            None => {
+                let (mut edge, mut next) = (Vec::new(), Vec::new());
+                row(0, &mut edge);
+                row(1, &mut next);
+                data.extend(edge.iter().zip(next).map(|(edge, next)| beyond(*edge, next)));
+            }
+        }
+        (first..=first + band.height).for_each(|j| row(j, &mut data));
+        Grid::from_data(wide, data).unwrap_or_else(|| Grid::filled(wide, f32::NAN))
+    }
+}
+
+/// The layers that are read of the filter that makes a layer of a prepared recipe from heights extrapolated by one
+/// sample; `None` if it is not made so.
+fn wanted(recipe: &Recipe, name: &str) -> Option<Vec<bool>> {
+    let [_, extrapolate, named] = recipe.nodes() else { return None };
+    let (Node::Extrapolate(extrapolate), Op::Filter(filter)) = (&extrapolate.node, named.node.op()) else {
+        return None;
+    };
+    let spec = filter.spec();
+    if extrapolate.samples != 1 || spec.inputs.len() != 1 || filter.halo(recipe.world.cell) != 1 {
+        return None;
+    }
     let layers = match &list::named(name)?.made {
         Made::Channels(channels) if channels.make.is_none() => (channels.layers)(recipe),
         Made::Channels(_) => return None,
@@ -69,30 +143,8 @@ fn only_filter<'a>(recipe: &'a Recipe, name: &str) -> Option<(&'a NamedNode, Vec
             Input::None | Input::Value(_) => return None,
         },
     };
-    let [_, extrapolate, named] = recipe.nodes() else { return None };
-    let is_one = matches!(&extrapolate.node, orogen_engine::node::Node::Extrapolate(op) if op.samples == 1);
-    (is_one && named.node.spec().inputs.len() == 1).then_some((named, layers))
-}
-
-/// The heights and one sample around them, as the world of an array has them: to the west and the north they are
-/// extrapolated; to the east and the south, where the last samples have cells that are still inside the world, they are
-/// repeated.
-fn surrounded(window: &Window, heights: &[f32]) -> Grid {
-    let wide = window.grown(1);
-    let mut data = Vec::with_capacity(wide.len());
-    // The northernmost row follows from the next two.
-    data.resize(wide.width, 0.0);
-    for row in heights.chunks_exact(window.width) {
-        let last = row[row.len() - 1];
-        data.push(beyond(row[0], row.get(1).copied().unwrap_or(last)));
-        data.extend_from_slice(row);
-        data.push(last);
-    }
-    data.extend_from_within(data.len() - wide.width..);
-    for i in 0..wide.width {
-        data[i] = beyond(data[wide.width + i], data[2 * wide.width + i]);
-    }
-    Grid::from_data(wide, data).unwrap_or_else(|| Grid::filled(wide, f32::NAN))
+    let is_read = |layer: &str| layers.contains(&format!("{}.{layer}", named.name));
+    Some(spec.layers.iter().map(|layer| is_read(layer.name)).collect())
 }
 
 #[cfg(test)]
@@ -107,6 +159,14 @@ mod tests {
 
     fn ground(width: usize, height: usize) -> Vec<f32> {
         (0..width * height).map(|k| ((k * k % 61) as f32).mul_add(0.7, (k % width) as f32 * 3.0)).collect()
+    }
+
+    /// The channels of a layer, if it is one of those of an array.
+    fn made(name: &str, window: &Window, heights: &[f32], options: &Options) -> Result<Option<Vec<Grid>>> {
+        let Some(layer) = ArrayLayer::new(name, window, heights, options)? else { return Ok(None) };
+        let mut grids = vec![Grid::filled(*window, -1.0); layer.channels()];
+        layer.fill(grids.iter_mut().map(|grid| grid.data_mut()).collect(), &Progress::none())?;
+        Ok(Some(grids))
     }
 
     /// The layer of a world of these heights.
@@ -129,11 +189,10 @@ mod tests {
     fn it_has_the_bits_of_a_world() {
         let mut direct = Vec::new();
         for derived in list::all().iter().filter(|derived| derived.name != "viewshed") {
-            for (width, height) in [(64, 40), (1, 1), (1, 5), (7, 2)] {
+            for (width, height) in [(64, 200), (1, 1), (1, 5), (7, 2), (9, ROWS), (3, ROWS + 1)] {
                 let (window, heights) = (Window::new(width, height, 12.5), ground(width, height));
                 let options = Options::default();
-                let made = layer(derived.name, &window, &heights, &options, &Progress::none()).unwrap();
-                let Some(made) = made else { continue };
+                let Some(made) = made(derived.name, &window, &heights, &options).unwrap() else { continue };
                 direct.push(derived.name);
                 let expected = by_world(derived.name, &window, &heights, &options);
                 assert!(same(&made, &expected), "{} {width} x {height}", derived.name);
@@ -149,9 +208,9 @@ mod tests {
         let options =
             Options::of(list::options().into_iter().map(|(spec, _)| spec), [("azimuth", "90"), ("altitude", "20")]);
         let options = options.unwrap();
-        let made = layer("hillshade", &window, &heights, &options, &Progress::none()).unwrap().unwrap();
-        assert!(same(&made, &by_world("hillshade", &window, &heights, &options)));
-        let refused = layer("slope", &window, &heights, &options, &Progress::none()).unwrap_err();
+        let light = made("hillshade", &window, &heights, &options).unwrap().unwrap();
+        assert!(same(&light, &by_world("hillshade", &window, &heights, &options)));
+        let refused = made("slope", &window, &heights, &options).unwrap_err();
         assert!(refused.to_string().contains("does not apply to the layer slope"), "{refused}");
     }
 
@@ -159,6 +218,6 @@ mod tests {
     fn missing_heights_are_left_to_a_world() {
         let (window, mut heights) = (Window::new(30, 20, 5.0), ground(30, 20));
         heights[77] = f32::NAN;
-        assert!(layer("slope", &window, &heights, &Options::default(), &Progress::none()).unwrap().is_none());
+        assert!(made("slope", &window, &heights, &Options::default()).unwrap().is_none());
     }
 }
