@@ -1,41 +1,21 @@
-"""Checks builds, exports, the cache and elevation models in moto's object store: the bytes of local files."""
+"""Checks builds, exports, the cache and elevation models in an object store: the bytes of local files."""
 
-import logging
-import os
 import signal
 import subprocess
 import time
 
-import boto3
 import numpy
 import rasterio
-from moto.server import ThreadedMotoServer
-from orogen import BINARY, WORK, Checks, build, export, orogen
+import stores
+from orogen import BINARY, CLIENT, WORK, Checks, build, export, orogen
 
 checks = Checks()
-# A line for each request.
-logging.getLogger("werkzeug").setLevel(logging.ERROR)
-server = ThreadedMotoServer(ip_address="127.0.0.1", port=0)
-server.start()
-host, port = server.get_host_and_port()
-os.environ.update(
-    AWS_ENDPOINT_URL=f"http://{host}:{port}",
-    AWS_ALLOW_HTTP="true",
-    AWS_REGION="us-east-1",
-    AWS_ACCESS_KEY_ID="somebody",
-    AWS_SECRET_ACCESS_KEY="secret",
-)
-s3 = boto3.client("s3", region_name="us-east-1", endpoint_url=f"http://{host}:{port}")
-s3.create_bucket(Bucket="land")
+store = stores.Azure() if CLIENT == "azure" else stores.S3()
 
 
 def objects(prefix):
     """The objects under a prefix, by the rest of their names."""
-    found = {}
-    for page in s3.get_paginator("list_objects_v2").paginate(Bucket="land", Prefix=prefix):
-        for entry in page.get("Contents", []):
-            found[entry["Key"][len(prefix) :]] = s3.get_object(Bucket="land", Key=entry["Key"])["Body"].read()
-    return found
+    return {name[len(prefix) :]: store.read(name) for name in store.names(prefix)}
 
 
 def files(path):
@@ -61,20 +41,20 @@ for name, more in [
     ("tiles", ("--tiles", "r16", "--tile", 65)),
 ]:
     build("hills", name, *options, *more)
-    orogen("build", "hills", "-o", f"s3://land/{name}", "--quiet", *options, *more)
+    orogen("build", "hills", "-o", f"{store.url}/{name}", "--quiet", *options, *more)
     same(name)
 build("hills", "parts.zarr", *options, "--tile", 64)
-line = [BINARY, "build", "hills", "-o", "s3://land/parts.zarr", "--quiet", *map(str, options), "--tile", "64", "--part"]
+line = [BINARY, "build", "hills", "-o", f"{store.url}/parts.zarr", "--quiet", *map(str, options), "--tile", "64", "--part"]
 parts = [subprocess.Popen([*line, f"{number}/3"], cwd=WORK) for number in (1, 2, 3)]
 checks.equal("parts: all succeed", [part.wait() for part in parts], [0, 0, 0])
 same("parts.zarr")
 
 # Killed in the middle, and resumed.
 build("alpine", "killed.zarr", "--window", "0,0,1024,1024", "--cell", 60, "--tile", 64)
-line = [BINARY, "build", "alpine", "-o", "s3://land/killed.zarr", "--quiet", "--threads", "1"]
+line = [BINARY, "build", "alpine", "-o", f"{store.url}/killed.zarr", "--quiet", "--threads", "1"]
 line += ["--window", "0,0,1024,1024", "--cell", "60", "--tile", "64"]
 running = subprocess.Popen(line, cwd=WORK)
-while running.poll() is None and s3.list_objects_v2(Bucket="land", Prefix="killed.zarr/")["KeyCount"] < 20:
+while running.poll() is None and len(store.names("killed.zarr/")) < 20:
     time.sleep(0.02)
 running.send_signal(signal.SIGKILL)
 running.wait()
@@ -83,23 +63,23 @@ orogen(*line[1:], "--resume")
 same("killed.zarr")
 
 # A solution that one process stores is read by another one.
-heights = numpy.load(export("alpine", "alpine.npy", "--size", 128, "--cache", "s3://land/cache"))
+heights = numpy.load(export("alpine", "alpine.npy", "--size", 128, "--cache", f"{store.url}/cache"))
 stored = objects("cache/")
 checks.that("cache: there are solutions", len(stored) > 0)
-again = numpy.load(export("alpine", "again.npy", "--size", 128, "--cache", "s3://land/cache"))
+again = numpy.load(export("alpine", "again.npy", "--size", 128, "--cache", f"{store.url}/cache"))
 checks.that("cache: the same heights", numpy.array_equal(heights, again))
 checks.equal("cache: stored once", objects("cache/"), stored)
 
 # A window of a large GeoTIFF, by rasterio and by us; exports into the store.
 build("hills", "large.tif", "--window", "0,0,1500,1500", "--cell", 10)
-s3.upload_file(str(WORK / "large.tif"), "land", "large.tif")
-part = numpy.load(export("s3://land/large.tif", "part.npy", "--window", "700,300,200,150"))
+store.write("large.tif", WORK / "large.tif")
+part = numpy.load(export(f"{store.url}/large.tif", "part.npy", "--window", "700,300,200,150"))
 with rasterio.open(WORK / "large.tif") as whole:
     expect = whole.read(1, window=rasterio.windows.Window(700, 300, 200, 150))
 checks.that("large.tif: the samples of rasterio", numpy.array_equal(part, expect))
-orogen("export", "hills", "--size", 100, "-o", "s3://land/out.tif")
+orogen("export", "hills", "--size", 100, "-o", f"{store.url}/out.tif")
 export("hills", "out.tif", "--size", 100)
 same("out.tif")
 
-server.stop()
+store.stop()
 checks.end()

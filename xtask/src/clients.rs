@@ -31,7 +31,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step of
 --all those of both lists:
 
   install   apt (as root on Debian); rustup's wasm32-unknown-unknown
-  packages  pip into target/clients/venv, npm into target/clients/node; versions pinned
+  packages  pip into target/clients/venv, npm into target/clients/node; versions pinned; those of the second list only if chosen
   build     cargo build --release of the command line and of the Python package
   window    clippy and build of the studio's window and of graphics cards
   wasm      the libraries built for WebAssembly, without threads; four presets under node, and a world without files
@@ -66,6 +66,7 @@ Only if named or with --all, because they take long or need large programs:
   fuzz      libFuzzer on the readers of foreign files, 60 s each
   luanti    a Luanti server opens worlds of blocks: the same blocks
   grass     GRASS and gdaldem compute the same derived layers: wetness, insolation, viewshed, landforms ...
+  azure     builds, caches and elevation models in Azurite's object store: the bytes of local files
   faults    clippy on object stores, and builds, caches and elevation models in a store that fails every few requests
   wheel     the same tests of the Python package as the wheel that maturin makes
   blender   Blender imports meshes: size, summit and light are right; needs Python 3.11
@@ -201,6 +202,12 @@ const CLIENTS: &[Client] = &[
         npm: &["pyright@1.1.414"],
     },
     Client { name: "remote", apt: &[], pip: &[NUMPY, RASTERIO, MOTO], npm: &[] },
+    Client {
+        name: "azure",
+        apt: &[("node", "nodejs"), ("npm", "npm")],
+        pip: &[NUMPY, RASTERIO, "azure-storage-blob==12.31.1"],
+        npm: &["azurite@3.35.0"],
+    },
     Client { name: "wheel", apt: &[], pip: &["maturin==1.16.0"], npm: &[] },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
@@ -236,7 +243,10 @@ const PACKAGES: Step = Step {
     name: "packages",
     about: "the Python and Node packages of the clients",
     group: Some(1),
-    run: || install::packages(CLIENTS),
+    run: || {
+        let is_asked = |client: &&Client| !ON_REQUEST.iter().any(|step| step.name == client.name);
+        install::packages(CLIENTS.iter().filter(|client| is_asked(client) || is_chosen(client.name)))
+    },
 };
 const BUILD: Step = Step {
     name: "build",
@@ -286,6 +296,9 @@ const ON_REQUEST: &[&Step] = &[
         noted("grass", || script_for("grass", "layers"))
     }),
     &beside("blender", "Blender imports meshes", || noted("blender", blender::check)),
+    &beside("azure", "builds, caches and heights in Azurite's object store", || {
+        noted("azure", || script_for("azure", "remote"))
+    }),
     &alone("faults", "object stores that fail", || noted("faults", remote::check_faults)),
     &alone("wheel", "the Python package as a wheel", || noted("wheel", python::check_wheel)),
     // These two share their folders with `wasm` and `presets`.

@@ -27,9 +27,18 @@ pub fn failure(error: &Error) -> io::Error {
         Error::NotSupported { .. } | Error::NotImplemented { .. } => {
             io::Error::new(io::ErrorKind::Unsupported, format!("the server cannot do it: {}", innermost(error)))
         }
+        _ if is_without_tls(error) => of(
+            io::ErrorKind::InvalidInput,
+            "the address of the server starts with http://; set AWS_ALLOW_HTTP=true (GOOGLE_ALLOW_HTTP, AZURE_ALLOW_HTTP) if it has no TLS",
+        ),
         _ if is_unreachable(error) => io::Error::other(format!("the store cannot be reached: {}", innermost(error))),
         _ => io::Error::other(innermost(error)),
     }
+}
+
+/// Whether the client refused an address because it is not encrypted. Its text is the only sign.
+fn is_without_tls(error: &Error) -> bool {
+    innermost(error) == "URL scheme is not allowed"
 }
 
 /// Whether no answer came.

@@ -264,3 +264,20 @@ fn info(meta: ObjectMeta) -> ObjectInfo {
     let tag = meta.e_tag.filter(|tag| !tag.starts_with("W/"));
     ObjectInfo { length: meta.size, changed: meta.last_modified.into(), tag }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_server_without_tls_must_be_allowed() {
+        let settings = [
+            ("AWS_ENDPOINT_URL", "http://127.0.0.1:9"),
+            ("AWS_ACCESS_KEY_ID", "somebody"),
+            ("AWS_SECRET_ACCESS_KEY", "secret"),
+        ];
+        let settings = settings.map(|(name, value)| (name.to_string(), value.to_string()));
+        let refused = Stores::new(settings.into()).info("s3://land/hills.tif").unwrap_err();
+        assert!(refused.to_string().contains("AWS_ALLOW_HTTP=true"), "{refused}");
+    }
+}
