@@ -69,6 +69,7 @@ Only if named or with --all, because they take long or need large programs:
   azure     builds, caches and elevation models in Azurite's object store: the bytes of local files
   faults    clippy on object stores, and builds, caches and elevation models in a store that fails every few requests
   wheel     the same tests of the Python package as the wheel that maturin makes
+  nogil     the tests of arrays and worlds from the wheel of the free-threaded python3.14t, in four threads; needs that Python
   blender   Blender imports meshes: size, summit and light are right; needs Python 3.11
 
 xtask/clients/passed.txt says when each of these last passed; a run without them prints those that are older than 14 days.
@@ -209,6 +210,7 @@ const CLIENTS: &[Client] = &[
         npm: &["azurite@3.35.0"],
     },
     Client { name: "wheel", apt: &[], pip: &["maturin==1.16.0"], npm: &[] },
+    Client { name: "nogil", apt: &[], pip: &["maturin==1.16.0"], npm: &[] },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
 
@@ -301,6 +303,9 @@ const ON_REQUEST: &[&Step] = &[
     }),
     &alone("faults", "object stores that fail", || noted("faults", remote::check_faults)),
     &alone("wheel", "the Python package as a wheel", || noted("wheel", python::check_wheel)),
+    &alone("nogil", "the wheel of the free-threaded Python, in several threads", || {
+        noted("nogil", python::check_free_threaded)
+    }),
     // These two share their folders with `wasm` and `presets`.
     &alone("wasm-all", "every preset made by the libraries built for WebAssembly", || {
         noted("wasm-all", wasm::check_all)

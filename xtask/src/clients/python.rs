@@ -5,6 +5,7 @@ use std::process::Command;
 
 use super::install;
 use crate::failure::{Failure, Result};
+use crate::output;
 use crate::shell::{self, program, root, run as sh, target_dir};
 
 /// Tests the package with the native part of the release build, laid out as in the wheel.
@@ -26,16 +27,44 @@ const LONGEST: u64 = 12_000_000;
 
 /// Tests the wheel that maturin makes.
 pub fn check_wheel() -> Result {
-    let wheel = wheel()?;
-    let length = std::fs::metadata(&wheel).map_or(0, |metadata| metadata.len());
-    if length > LONGEST {
-        return Err(Failure::new(format!("the wheel has {length} bytes; it should have at most {LONGEST}")));
-    }
+    let wheel = wheel(None)?;
     let (venv, site) = environment("wheel")?;
     let mut unpack = program(install::python());
     unpack.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--no-index"]);
     sh(unpack.arg("--target").arg(&site).arg(&wheel))?;
     test(&venv, &site)
+}
+
+/// The Python without a global lock, which is in no package of Debian.
+const FREE_THREADED: &str = "python3.14t";
+
+/// What its tests need.
+const FREE_THREADED_TESTS: [&str; 4] =
+    [super::NUMPY, "pytest==9.2.0", "hypothesis==6.170.17", "pytest-run-parallel==0.10.0"];
+
+/// Tests the wheel of the free-threaded Python: every test in four threads at a time.
+pub fn check_free_threaded() -> Result {
+    let lock = shell::capture(program(FREE_THREADED).args(["-c", "import sys; print(sys._is_gil_enabled())"]));
+    if !lock.is_ok_and(|lock| lock.trim() == "False") {
+        let message = format!("{FREE_THREADED} is missing: build CPython 3.14 with `configure --disable-gil`");
+        return Err(Failure::new(message));
+    }
+    let wheel = wheel(Some(FREE_THREADED))?;
+    let venv = super::folder().join("work/nogil");
+    shell::empty_dir(&venv)?;
+    sh(program(FREE_THREADED).args(["-m", "venv"]).arg(&venv))?;
+    let python = venv.join("bin/python");
+    install::patiently(|| {
+        let mut command = program(&python);
+        command.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--only-binary=:all:"]);
+        command.args(FREE_THREADED_TESTS).arg(&wheel);
+        command
+    })?;
+    let tests = root().join("python/tests");
+    let mut test = program(&python);
+    test.current_dir(&venv).args(["-m", "pytest", "-p", "no:cacheprovider", "--parallel-threads", "4", "-c"]);
+    test.arg(root().join("python/pyproject.toml")).arg("--rootdir").arg(&venv);
+    sh(test.args(["test_arrays.py", "test_world.py"].map(|name| tests.join(name))))
 }
 
 /// The tests of the package, its generated files and its types, by two type checkers.
@@ -74,16 +103,24 @@ fn environment(name: &str) -> Result<(PathBuf, PathBuf)> {
     Ok((venv, site))
 }
 
-/// Makes the wheel; returns its path.
-fn wheel() -> Result<PathBuf> {
+/// Makes the wheel, for all Pythons with a stable interface or for one interpreter; returns its path.
+fn wheel(interpreter: Option<&str>) -> Result<PathBuf> {
     let folder = target_dir().join("wheels");
     shell::empty_dir(&folder)?;
     let mut build = program(install::python());
     build.args(["-m", "maturin", "build", "--quiet", "--profile", "wheel", "--locked", "--out"]).arg(&folder);
+    build.args(interpreter.iter().flat_map(|python| ["--interpreter", python]));
     sh(build.current_dir(root().join("python")))?;
     let entries = std::fs::read_dir(&folder).into_iter().flatten().flatten();
     let found = entries.map(|entry| entry.path()).find(|path| path.extension().is_some_and(|end| end == "whl"));
-    found.ok_or_else(|| Failure::new("maturin has made no wheel"))
+    let wheel = found.ok_or_else(|| Failure::new("maturin has made no wheel"))?;
+    match std::fs::metadata(&wheel).map_or(0, |metadata| metadata.len()) {
+        length @ ..=LONGEST => {
+            output::line(format_args!("    {}: {length} bytes", wheel.file_name().unwrap_or_default().display()));
+            Ok(wheel)
+        }
+        length => Err(Failure::new(format!("the wheel has {length} bytes; it should have at most {LONGEST}"))),
+    }
 }
 
 /// The folder of a Python's packages.
