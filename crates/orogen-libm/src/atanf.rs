@@ -13,8 +13,8 @@
  * ====================================================
  */
 
-//! Written without branches, with the operations of the origin in their order: the same bits, and loops over many values
-//! use vectors.
+//! Written without branches, with the operations of the origin in their order: the same bits, and loops over many
+//! values use vectors.
 
 const A_T: [f32; 5] = [3.3333328366e-01, -1.9999158382e-01, 1.4253635705e-01, -1.0648017377e-01, 6.1687607318e-02];
 

@@ -45,6 +45,30 @@ pub fn read_bytes(path: &Path) -> Option<Vec<u8>> {
     open::bytes(path, "read", LONGEST_TEXT).ok()?
 }
 
+/// The path of the next version of a file: its name with a number that is greater than those of all versions beside it,
+/// such as `land-002.toml` for `land-001.toml` or for `land.toml`.
+#[must_use]
+pub fn next_version(path: &Path) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let base = version(&stem).map_or(stem.as_str(), |(base, _)| base);
+    let end = path.extension().map_or(String::new(), |end| format!(".{}", end.to_string_lossy()));
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let beside = std::fs::read_dir(folder).into_iter().flatten().flatten().filter_map(|entry| {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let (other, number) = version(name.strip_suffix(&end)?)?;
+        (other == base).then_some(number)
+    });
+    let last = beside.max().unwrap_or(0);
+    path.with_file_name(format!("{base}-{:03}{end}", last + 1))
+}
+
+/// The name and the number of a version: three digits or more after a hyphen.
+fn version(stem: &str) -> Option<(&str, u32)> {
+    let (base, digits) = stem.rsplit_once('-')?;
+    let is_number = digits.len() >= 3 && digits.bytes().all(|digit| digit.is_ascii_digit());
+    Some((base, digits.parse().ok().filter(|number| is_number && *number < u32::MAX)?))
+}
+
 /// Creates a folder and those around it, unless it exists.
 ///
 /// # Errors
@@ -143,4 +167,25 @@ pub fn list(folder: &Path) -> Result<Vec<Entry>> {
 #[must_use]
 pub fn working_folder() -> PathBuf {
     std::env::current_dir().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use orogen::io::test_folder::TestFolder;
+
+    #[test]
+    fn versions_are_numbered_on() {
+        let folder = TestFolder::new("versions").unwrap();
+        let path = |name: &str| folder.join(name);
+        assert_eq!(next_version(&path("land.toml")), path("land-001.toml"));
+        for name in ["land-001.toml", "land-007.toml", "land-0x8.toml", "other-099.toml", "land-050.json"] {
+            write(&path(name), "").unwrap();
+        }
+        for name in ["land.toml", "land-001.toml", "land-007.toml"] {
+            assert_eq!(next_version(&path(name)), path("land-008.toml"), "{name}");
+        }
+        assert_eq!(next_version(&path("route-66.toml")), path("route-66-001.toml"), "two digits are a name");
+        assert_eq!(next_version(Path::new("nowhere/a.toml")), Path::new("nowhere/a-001.toml"));
+    }
 }

@@ -39,6 +39,8 @@ pub struct Settings {
     pub scale: f32,
     /// Memory limit in bytes.
     pub memory: u64,
+    /// Kept cameras of the 3D view, as numbers.
+    pub views: Vec<[f32; 6]>,
     /// Whether nodes of the graph show small pictures.
     pub thumbnails: bool,
     /// Whether the panel below the view is shown.
@@ -59,6 +61,7 @@ impl Default for Settings {
             window: None,
             scale: 1.0,
             memory: MEMORY,
+            views: Vec::new(),
             thumbnails: true,
             has_below: true,
             has_inspector: true,

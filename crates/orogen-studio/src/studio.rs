@@ -143,6 +143,13 @@ impl Studio {
         went
     }
 
+    /// Goes to a step of the history; false if there is none or it is the current one.
+    pub fn go_to(&mut self, step: usize) -> bool {
+        let went = self.document.go_to(step);
+        self.keep_selection();
+        went
+    }
+
     /// Sets the text of the recipe, as typed.
     pub fn type_text(&mut self, text: String) {
         self.document.type_text(text);

@@ -4,6 +4,8 @@
 
 #[path = "window/export.rs"]
 mod export;
+#[path = "window/finding.rs"]
+mod finding;
 #[path = "window/manners.rs"]
 mod manners;
 #[path = "window/unsaved.rs"]

@@ -65,7 +65,7 @@ pub fn gradients_between(rows: [&[f32]; 3], cell: f64, mut each: impl FnMut(usiz
     }
 }
 
-/// Fills `out` with a value of the gradient at each inner sample of three adjacent rows, given from north to south. `out`
+/// Fills `out` with a value of the gradient at each inner sample of three adjacent rows, given from north to south. It
 /// is shorter than the rows by two.
 pub fn values_between(rows: [&[f32]; 3], cell: f64, out: &mut [f32], value: impl Fn(Gradient) -> f32 + Copy) {
     if !dispatch(Finite { rows, cell, value, out: &mut *out }) {

@@ -47,6 +47,18 @@ op! {
 
 const CODE: &str = concat!(include_str!("../lower/horn.wgsl"), include_str!("slope.wgsl"));
 
+impl Slope {
+    /// Fills a row of a layer from the rows of heights around it.
+    fn fill(&self, layer: usize, rows: [&[f32]; 3], cell: f64, row: &mut [f32]) {
+        match (layer, self.unit) {
+            (0, SlopeUnit::Degrees) => degrees_between(rows, cell, row),
+            (0, SlopeUnit::Ratio) => steepness_between(rows, cell, row),
+            (1, _) => values_between(rows, cell, row, |gradient| gradient.east),
+            _ => values_between(rows, cell, row, |gradient| -gradient.north),
+        }
+    }
+}
+
 impl Filter for Slope {
     fn halo(&self, _: f64) -> usize {
         1
@@ -54,21 +66,13 @@ impl Filter for Slope {
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let source = inputs.required("source")?;
-        let values: [fn(&Slope, [&[f32]; 3], f64, &mut [f32]); 3] = [
-            |op, rows, cell, row| match op.unit {
-                SlopeUnit::Degrees => degrees_between(rows, cell, row),
-                SlopeUnit::Ratio => steepness_between(rows, cell, row),
-            },
-            |_, rows, cell, row| values_between(rows, cell, row, |gradient| gradient.east),
-            |_, rows, cell, row| values_between(rows, cell, row, |gradient| -gradient.north),
-        ];
-        for (layer, value) in out.iter_mut().zip(values) {
+        for (index, layer) in out.iter_mut().enumerate() {
             let Some(layer) = layer.as_mut().filter(|_| !window.is_empty()) else { continue };
             context.progress.expect(window.height as f64);
             parallel::try_for_each(layer.data_mut().chunks_mut(window.width).enumerate(), |(j, row)| {
                 context.progress.step(1.0)?;
                 let rows = [source.row(j), source.row(j + 1), source.row(j + 2)];
-                value(self, rows, window.cell, row);
+                self.fill(index, rows, window.cell, row);
                 Ok(())
             })?;
         }

@@ -276,6 +276,12 @@ impl Document {
         self.went(went)
     }
 
+    /// Goes to a step of the history; false if there is none or it is the current one.
+    pub fn go_to(&mut self, step: usize) -> bool {
+        let went = self.history.go_to(step);
+        self.went(went)
+    }
+
     fn went(&mut self, went: bool) -> bool {
         if went {
             self.revision += 1;

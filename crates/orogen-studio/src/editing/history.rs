@@ -79,6 +79,23 @@ impl History {
         self.go(Some(self.at + 1).filter(|at| *at < self.steps.len()))
     }
 
+    /// The changes of all steps, oldest first, as keys of the catalog; the first step has none.
+    #[must_use]
+    pub fn labels(&self) -> impl ExactSizeIterator<Item = &'static str> + '_ {
+        self.steps.iter().map(|step| step.label)
+    }
+
+    /// The number of the current step, from 0.
+    #[must_use]
+    pub fn at(&self) -> usize {
+        self.at
+    }
+
+    /// Goes to a step; false if there is none or it is the current one.
+    pub fn go_to(&mut self, step: usize) -> bool {
+        self.go(Some(step).filter(|step| *step < self.steps.len() && *step != self.at))
+    }
+
     fn go(&mut self, to: Option<usize>) -> bool {
         self.gesture = None;
         let Some(to) = to else { return false };
@@ -113,6 +130,19 @@ mod tests {
         assert_eq!(history.text(), "b");
         history.push("d".into(), "edit", None);
         assert!(!history.redo());
+        assert_eq!(history.text(), "d");
+    }
+
+    #[test]
+    fn any_step_is_reached_at_once() {
+        let mut history = History::new("a".into());
+        for (text, label) in [("b", "edit"), ("c", "seed"), ("d", "edit")] {
+            history.push(text.into(), label, None);
+        }
+        assert_eq!(history.labels().collect::<Vec<_>>(), ["", "edit", "seed", "edit"]);
+        assert!(history.go_to(1) && !history.go_to(1) && !history.go_to(4));
+        assert_eq!((history.at(), history.text(), history.redo_label()), (1, "b", Some("seed")));
+        assert!(history.go_to(3));
         assert_eq!(history.text(), "d");
     }
 

@@ -2,6 +2,7 @@
 
 pub mod adding;
 pub mod brush;
+pub mod bypass;
 pub mod document;
 pub mod drawing;
 pub mod edit;

@@ -43,7 +43,7 @@ impl LayerExport {
     }
 
     /// Selects another format and drops options that it lacks. If it cannot hold the layer, the heights are selected. A
-    /// mesh gets few triangles: its error is a round number of metres near a thousandth of `relief`, the difference
+    /// mesh gets few triangles: its error is a round number of metres near 1/250 of `relief`, the difference
     /// between the highest and the lowest height.
     pub fn set_format(&mut self, format: &'static Format, relief: Option<f64>) {
         let was_mesh = self.format.knows(MAX_ERROR);
@@ -53,7 +53,7 @@ impl LayerExport {
             self.set_layer(HEIGHT);
         }
         if let (true, false, Some(relief)) = (format.knows(MAX_ERROR), was_mesh, relief) {
-            self.options.insert(MAX_ERROR, round(relief / 1000.0).to_string());
+            self.options.insert(MAX_ERROR, round(relief / 250.0).to_string());
         }
     }
 
@@ -161,7 +161,10 @@ mod tests {
         let mut export = LayerExport::new(named("tif"));
         export.set_layer("normal");
         export.set_format(named("glb"), Some(2600.0));
-        assert_eq!((export.layer.as_str(), export.options.get("max-error").map(String::as_str)), ("height", Some("2")));
+        assert_eq!(
+            (export.layer.as_str(), export.options.get("max-error").map(String::as_str)),
+            ("height", Some("10"))
+        );
         // A value that the user chose is kept for another kind of mesh.
         export.options.insert("max-error", "7".into());
         export.set_format(named("obj"), Some(2600.0));

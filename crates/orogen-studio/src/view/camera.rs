@@ -37,7 +37,69 @@ impl Default for Camera {
     }
 }
 
+/// A direction to look from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs, reason = "its name says it")]
+pub enum Side {
+    Above,
+    North,
+    East,
+    South,
+    West,
+}
+
+impl Side {
+    /// All sides.
+    pub const ALL: [Side; 5] = [Side::Above, Side::North, Side::East, Side::South, Side::West];
+
+    /// The catalog key of its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Side::Above => "relief.from_above",
+            Side::North => "relief.from_north",
+            Side::East => "relief.from_east",
+            Side::South => "relief.from_south",
+            Side::West => "relief.from_west",
+        }
+    }
+}
+
 impl Camera {
+    /// The camera that sees the whole land from a side.
+    #[must_use]
+    pub fn of_side(side: Side) -> Camera {
+        let quarters = match side {
+            Side::Above | Side::South => 0.0,
+            Side::East => 1.0,
+            Side::North => 2.0,
+            Side::West => 3.0,
+        };
+        let pitch = if side == Side::Above { PITCHES[1] } else { 0.5 };
+        Camera { target: Vec3::ZERO, yaw: quarters * std::f32::consts::FRAC_PI_2, pitch, distance: 3.0 }
+    }
+
+    /// The camera as numbers, to be kept in a file.
+    #[must_use]
+    pub fn numbers(&self) -> [f32; 6] {
+        [self.target.x, self.target.y, self.target.z, self.yaw, self.pitch, self.distance]
+    }
+
+    /// The camera of [`numbers`](Camera::numbers), within its limits; what is not finite gets its default.
+    #[must_use]
+    pub fn of_numbers(numbers: [f32; 6]) -> Camera {
+        if numbers.iter().any(|number| !number.is_finite()) {
+            return Camera::default();
+        }
+        let [x, y, z, yaw, pitch, distance] = numbers;
+        Camera {
+            target: Vec3::new(x, y, z).clamp(Vec3::splat(-REACH), Vec3::splat(REACH)),
+            yaw: yaw.rem_euclid(std::f32::consts::TAU),
+            pitch: pitch.clamp(PITCHES[0], PITCHES[1]),
+            distance: distance.clamp(DISTANCES[0], DISTANCES[1]),
+        }
+    }
+
     /// The position of the camera.
     #[must_use]
     pub fn position(&self) -> Vec3 {
@@ -117,6 +179,23 @@ impl Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sides_look_from_where_they_are_called() {
+        for (side, azimuth) in [(Side::North, 0.0), (Side::East, 90.0), (Side::South, 180.0), (Side::West, 270.0)] {
+            assert_eq!(Camera::of_side(side).bearing()[0], azimuth, "{side:?}");
+        }
+        assert!(Camera::of_side(Side::Above).bearing()[1] > 88.0);
+    }
+
+    #[test]
+    fn numbers_come_back_and_broken_ones_do_no_harm() {
+        let camera = Camera { target: Vec3::new(0.1, -0.2, 0.3), yaw: 1.0, pitch: 0.4, distance: 0.5 };
+        assert_eq!(Camera::of_numbers(camera.numbers()), camera);
+        let far = Camera::of_numbers([1e9, 0.0, 0.0, -9.0, 9.0, 0.0]);
+        assert!(far.position().is_finite() && far.distance == DISTANCES[0] && far.pitch == PITCHES[1]);
+        assert_eq!(Camera::of_numbers([f32::NAN; 6]), Camera::default());
+    }
 
     #[test]
     fn the_target_is_in_the_middle_of_the_picture() {

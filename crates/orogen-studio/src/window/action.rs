@@ -23,6 +23,8 @@ pub enum Action {
     Type(String),
     /// Ends a gesture, such as the drag of a slider.
     EndGesture,
+    /// Goes to a step of the history.
+    GoTo(usize),
     /// Selects nodes.
     Select(Vec<String>),
     /// Shows a layer.
@@ -41,6 +43,10 @@ pub enum Action {
     Sun([f64; 2]),
     /// Sets the interval of contours in metres; 0 chooses one that suits the land. `None` switches contours off.
     Contours(Option<f64>),
+    /// Keeps a camera of the 3D view.
+    KeepView([f32; 6]),
+    /// Forgets a kept camera.
+    DropView(usize),
     /// Sets the number of samples along the longer side of the finest picture.
     Finest(usize),
     /// Selects the part of the world.

@@ -43,7 +43,7 @@ pub fn show(ui: &mut Ui, studio: &Studio, language: Language) {
 
 fn figures(ui: &mut Ui, frame: &Frame, language: Language) {
     let figures = &frame.statistics;
-    let unit = if frame.unit.is_empty() { String::new() } else { format!(" {}", frame.unit) };
+    let unit = if frame.unit.is_empty() { String::new() } else { format!(" {}", language.named(frame.unit)) };
     let quality = match frame.quality {
         Quality::Draft => "analysis.draft",
         Quality::Coarse => "analysis.coarse",

@@ -114,7 +114,8 @@ impl App {
         }
         let recovery = Recovery::new(folder.as_deref());
         let left = recovery.left();
-        let panels = Panels::new(&wake);
+        let mut panels = Panels::new(&wake);
+        panels.relief.views.clone_from(&settings.views);
         let file_watch = FileWatch::new(Arc::clone(&wake))?;
         let mut app = App {
             session,
@@ -301,6 +302,15 @@ impl App {
                 theme::set(context, theme);
                 self.remember();
             }
+            Action::KeepView(view) => {
+                self.settings.views.push(view);
+                self.show_kept_views();
+            }
+            Action::DropView(nth) => {
+                let mut nth_of = 0..;
+                self.settings.views.retain(|_| nth_of.next() != Some(nth));
+                self.show_kept_views();
+            }
             Action::Draw(op) => {
                 self.panels.view = View::Map;
                 self.panels.map.draw(op);
@@ -340,6 +350,7 @@ impl App {
                     Action::Select(names) => studio.selected = names,
                     Action::Show(layer) => studio.look.layer = layer,
                     Action::Color(coloring) => studio.look.coloring = coloring,
+                    Action::GoTo(step) => drop(studio.go_to(step)),
                     Action::Sun(sun) => studio.look.sun = sun,
                     Action::Contours(interval) => studio.look.contours = interval,
                     Action::Finest(finest) => studio.look.finest = finest,
@@ -348,6 +359,11 @@ impl App {
                 }
             }
         }
+    }
+
+    fn show_kept_views(&mut self) {
+        self.panels.relief.views.clone_from(&self.settings.views);
+        self.remember();
     }
 
     /// Opens the color dialog with the colors of the view.

@@ -11,6 +11,7 @@ pub enum Command {
     Open,
     Save,
     SaveAs,
+    SaveVersion,
     Export,
     Quit,
     Undo,
@@ -112,12 +113,13 @@ const CTRL: Modifiers = Modifiers::COMMAND;
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// All commands, in the order of their menus.
-pub static ALL: [Entry; 31] = [
+pub static ALL: [Entry; 32] = [
     with_keys(Command::New, "command.new", Menu::File, false, CTRL, Key::N),
     with_keys(Command::Empty, "command.empty", Menu::File, false, CTRL_SHIFT, Key::N),
     with_keys(Command::Open, "command.open", Menu::File, false, CTRL, Key::O),
     with_keys(Command::Save, "command.save", Menu::File, true, CTRL, Key::S),
     with_keys(Command::SaveAs, "command.save_as", Menu::File, true, CTRL_SHIFT, Key::S),
+    with_keys(Command::SaveVersion, "command.save_version", Menu::File, true, CTRL.plus(Modifiers::ALT), Key::S),
     with_keys(Command::Export, "command.export", Menu::File, true, CTRL, Key::E),
     with_keys(Command::Quit, "command.quit", Menu::File, false, CTRL, Key::Q),
     with_keys(Command::Undo, "command.undo", Menu::Edit, true, CTRL, Key::Z),
@@ -163,7 +165,7 @@ pub fn pressed(context: &Context) -> Vec<Command> {
     let entries = ALL.iter().flat_map(|entry| entry.shortcuts().map(move |keys| (entry.command, keys)));
     let mut entries: Vec<(Command, KeyboardShortcut)> = entries.filter(|(_, keys)| is_free(keys)).collect();
     // Longer combinations first, so that Ctrl+Shift+Z does not trigger Ctrl+Z.
-    entries.sort_by_key(|(_, keys)| !keys.modifiers.shift);
+    entries.sort_by_key(|(_, keys)| !(keys.modifiers.shift || keys.modifiers.alt));
     let is_pressed = |keys: &KeyboardShortcut| context.input_mut(|input| input.consume_shortcut(keys));
     entries.into_iter().filter(|(_, keys)| is_pressed(keys)).map(|(command, _)| command).collect()
 }

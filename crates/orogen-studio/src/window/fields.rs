@@ -6,6 +6,8 @@ use eframe::egui::{
 use orogen::declare::Shape;
 use orogen::value::{Spanned, Value};
 
+use crate::catalogue::Language;
+
 /// The user's input in a field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Input<T> {
@@ -102,7 +104,14 @@ pub fn rounded(value: f64) -> f64 {
 }
 
 /// A field for a value of a shape. Other values are only described.
-pub fn value(ui: &mut Ui, label: &str, shape: Shape, value: &Value, declared: &Number) -> Input<Value> {
+pub fn value(
+    ui: &mut Ui,
+    label: &str,
+    shape: Shape,
+    value: &Value,
+    declared: &Number,
+    language: Language,
+) -> Input<Value> {
     match (shape, value) {
         (Shape::Number, value) => match value.number() {
             Some(own) => number(ui, label, own, declared).map(Value::Number),
@@ -124,10 +133,14 @@ pub fn value(ui: &mut Ui, label: &str, shape: Shape, value: &Value, declared: &N
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::CheckBox, true, name.clone()));
             Input { value: response.changed().then_some(Value::Flag(flag)), ended: response.changed() }
         }
-        (Shape::Choice(choices), Value::Text(own)) => choice(ui, label, &choices(), own).map(Value::Text),
+        (Shape::Choice(choices), Value::Text(own)) => choice(ui, label, &choices(), own, language).map(Value::Text),
         (Shape::Pair, Value::List(items)) => pair(ui, label, items),
         (Shape::Curve, Value::List(items)) => curve(ui, items),
         (Shape::Expression | Shape::File | Shape::Crs, Value::Text(own)) => text(ui, label, own).map(Value::Text),
+        (_, Value::List(items)) => {
+            ui.weak(language.fill("inspector.items", &[("count", &items.len().to_string())]));
+            Input::none()
+        }
         _ => {
             ui.weak(value.describe());
             Input::none()
@@ -135,11 +148,18 @@ pub fn value(ui: &mut Ui, label: &str, shape: Shape, value: &Value, declared: &N
     }
 }
 
-fn choice(ui: &mut Ui, label: &str, choices: &[(&'static str, &'static str)], own: &str) -> Input<String> {
+fn choice(
+    ui: &mut Ui,
+    label: &str,
+    choices: &[(&'static str, &'static str)],
+    own: &str,
+    language: Language,
+) -> Input<String> {
     let mut chosen = None;
-    let list = ComboBox::from_id_salt(label).selected_text(own).show_ui(ui, |ui| {
+    let list = ComboBox::from_id_salt(label).selected_text(language.named(own)).show_ui(ui, |ui| {
         for (name, about) in choices {
-            if ui.selectable_label(*name == own, *name).on_hover_text(about.trim()).clicked() {
+            let entry = ui.selectable_label(*name == own, language.named(name));
+            if entry.on_hover_text(language.hint(name, about)).clicked() {
                 chosen = Some((*name).to_owned());
             }
         }

@@ -6,6 +6,7 @@ use eframe::egui::{
 };
 use orogen::declare::spec::Locality;
 
+use crate::catalogue::Language;
 use crate::view::scene::{GraphBox, Kind};
 
 /// The width of a box at normal size.
@@ -86,12 +87,16 @@ pub fn port_near(block: &GraphBox, y: f32) -> Option<usize> {
 pub struct Shown<'a> {
     /// Whether it is selected.
     pub is_selected: bool,
+    /// Whether it is left out.
+    pub is_bypassed: bool,
     /// Whether the view shows its layer.
     pub is_in_view: bool,
     /// Its small picture.
     pub picture: Option<&'a TextureHandle>,
     /// The scale of the graph; 1 is normal.
     pub zoom: f32,
+    /// The language of ops and inputs.
+    pub language: Language,
 }
 
 /// Draws a box.
@@ -106,7 +111,14 @@ pub fn draw(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, 
     }
     painter.rect_filled(rect, round, visuals.window_fill);
     let title = Rect::from_min_max(rect.min, pos2(rect.right(), rect.top() + TITLE * zoom));
-    painter.rect_filled(title, round, color(block.kind));
+    let own = if shown.is_bypassed { color(block.kind).gamma_multiply(0.35) } else { color(block.kind) };
+    painter.rect_filled(title, round, own);
+    if shown.is_bypassed {
+        // A line past the box, as the heights go.
+        let y = rect.bottom() - 6.0 * zoom;
+        let line = [pos2(rect.left() + 8.0 * zoom, y), pos2(rect.right() - 8.0 * zoom, y)];
+        painter.line_segment(line, Stroke::new(2.0 * zoom, visuals.weak_text_color()));
+    }
     let border = match shown.is_selected {
         true => Stroke::new(2.5, visuals.selection.stroke.color),
         false => Stroke::new(1.0, visuals.window_stroke.color),
@@ -153,7 +165,7 @@ fn words(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, sho
         return;
     }
     let count = block.nodes.len().to_string();
-    let subtitle = if block.kind == Kind::Group { &count } else { &block.subtitle };
+    let subtitle = if block.kind == Kind::Group { &count } else { shown.language.named(&block.subtitle) };
     if block.kind != Kind::Outside {
         write(below, subtitle, small.clone(), Color32::from_white_alpha(190));
     }
@@ -164,7 +176,7 @@ fn words(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, sho
     let left = painter.with_clip_rect(left.intersect(painter.clip_rect()));
     for (k, input) in block.ports.iter().enumerate() {
         let place = at(rect, port(block, k), zoom, false) + vec2(8.0 * zoom, 0.0);
-        left.text(place, Align2::LEFT_CENTER, &input.label, small.clone(), visuals.text_color());
+        left.text(place, Align2::LEFT_CENTER, shown.language.named(&input.label), small.clone(), visuals.text_color());
     }
     if block.kind == Kind::Group {
         for (k, name) in block.outlets.iter().enumerate() {

@@ -18,7 +18,7 @@ use crate::catalogue::Language;
 use crate::editing::adding::After;
 use crate::editing::brush::Effect;
 use crate::editing::edit::{Edit, Reader};
-use crate::editing::{adding, drawing, groups, names, strokes};
+use crate::editing::{adding, bypass, drawing, groups, names, strokes};
 use crate::preview::picture::Picture;
 use crate::studio::{Studio, surface};
 use crate::view::arrangement::{self, Area};
@@ -324,6 +324,14 @@ impl Graph {
             response.context_menu(|ui| self.menu(ui, block, studio, language, actions));
         }
         let shown = Shown {
+            language,
+            is_bypassed: matches!(block.kind, Kind::Node(_))
+                && studio
+                    .document
+                    .recipe()
+                    .nodes()
+                    .iter()
+                    .any(|named| named.name == block.id && bypass::is_bypassed(named)),
             is_selected,
             is_in_view: block.nodes.contains(&studio.look.layer)
                 || block.kind == Kind::Output && block.title == studio.look.layer,
@@ -412,6 +420,11 @@ impl Graph {
                 let is_it = recipe.output_inputs().iter().any(|(output, input)| *output == name && *input == source);
                 if studio.document.is_valid() && !is_it {
                     entry(ui, "graph.use_as_height", Some(Action::Edit(Edit::Output { name, source })));
+                }
+                let named = node.and_then(|name| recipe.nodes().iter().find(|named| named.name == *name));
+                if let Some(edit) = named.and_then(bypass::toggled).filter(|_| studio.document.is_valid()) {
+                    let text = if named.is_some_and(bypass::is_bypassed) { "graph.use_again" } else { "graph.bypass" };
+                    entry(ui, text, Some(Action::Edit(edit)));
                 }
             }
         }

@@ -5,15 +5,20 @@ use std::collections::HashMap;
 use std::sync::LazyLock;
 
 use eframe::egui::text::{LayoutJob, TextFormat};
-use eframe::egui::{self, FontId, Key, Pos2, Rect, TextEdit, Ui, vec2};
+use eframe::egui::{self, CollapsingHeader, FontId, Key, Pos2, Rect, TextEdit, Ui, vec2};
 use orogen::node::Node;
 use orogen::presets;
 
+use super::op_groups;
 use crate::catalogue::Language;
 
-/// The width of the list, and the number of letters of a description on one of its lines.
+/// The size of the list, and the number of letters of a description on one of its lines.
 const WIDTH: f32 = 380.0;
+const HEIGHT: f32 = 400.0;
 const LETTERS: usize = 62;
+
+/// Number of ops that are listed before the groups: those that presets use most.
+const COMMON: usize = 4;
 
 /// A search, and the position of the new node.
 #[derive(Debug, Default)]
@@ -46,11 +51,11 @@ impl Search {
     pub fn show(&mut self, ui: &Ui, rect: Rect, place: Pos2, language: Language) -> Found {
         let mut chosen = Found::Nothing;
         let mut is_open = true;
-        let place = place.clamp(rect.min, (rect.max - vec2(WIDTH + 10.0, 120.0)).max(rect.min));
+        let place = place.clamp(rect.min, (rect.max - vec2(WIDTH + 10.0, 200.0)).max(rect.min));
         egui::Window::new(language.text("graph.add"))
             .open(&mut is_open)
             .fixed_pos(place)
-            .fixed_size(vec2(WIDTH, 300.0))
+            .fixed_size(vec2(WIDTH, HEIGHT + 40.0))
             .collapsible(false)
             .show(ui.ctx(), |ui| {
                 let field = ui.add(
@@ -66,15 +71,24 @@ impl Search {
                 {
                     chosen = Found::Op(first);
                 }
-                egui::ScrollArea::vertical().max_height(260.0).auto_shrink([false, true]).show(ui, |ui| {
-                    for op in found {
-                        let Some(node) = Node::named(op) else { continue };
-                        let about = orogen::declare::short(node.spec().doc);
-                        let entry = ui.selectable_label(false, entry(ui, op, &about));
-                        entry.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, op));
-                        if entry.on_hover_text(about).clicked() {
-                            chosen = Found::Op(op);
+                let is_browsed = self.text.trim().is_empty();
+                egui::ScrollArea::vertical().max_height(HEIGHT).auto_shrink([false, true]).show(ui, |ui| {
+                    let mut list = |ui: &mut Ui, ops: &[&'static str]| {
+                        for op in ops {
+                            if op_entry(ui, op, language) {
+                                chosen = Found::Op(op);
+                            }
                         }
+                    };
+                    match is_browsed {
+                        true => {
+                            ui.strong(language.text("ops.common"));
+                            list(ui, &found[..COMMON.min(found.len())]);
+                            for group in &op_groups::ALL {
+                                CollapsingHeader::new(language.text(group.name)).show(ui, |ui| list(ui, group.ops));
+                            }
+                        }
+                        false => list(ui, &found),
                     }
                 });
             });
@@ -83,13 +97,28 @@ impl Search {
     }
 }
 
+/// An entry for an op; whether it was clicked.
+fn op_entry(ui: &mut Ui, op: &str, language: Language) -> bool {
+    let Some(node) = Node::named(op) else { return false };
+    let about = language.told_shortly(node.spec().doc);
+    let entry = ui.selectable_label(false, entry(ui, op, &about, language));
+    entry.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, op));
+    entry.on_hover_text(about).clicked()
+}
+
 /// The text of an entry: the name of the op, and its description on one line.
-fn entry(ui: &Ui, op: &str, about: &str) -> LayoutJob {
+fn entry(ui: &Ui, op: &str, about: &str, language: Language) -> LayoutJob {
     let format = |size: f32, color| TextFormat::simple(FontId::proportional(size), color);
     let mut job = LayoutJob::default();
-    job.append(op, 0.0, format(13.5, ui.visuals().strong_text_color()));
+    let name = language.named(op);
+    job.append(name, 0.0, format(13.5, ui.visuals().strong_text_color()));
+    if name != op {
+        job.append(op, 8.0, format(11.0, ui.visuals().weak_text_color()));
+    }
     job.append("\n", 0.0, format(11.0, ui.visuals().weak_text_color()));
-    let short = match about.char_indices().nth(LETTERS) {
+    // Chinese letters are more than twice as wide.
+    let letters = if language == Language::Chinese { LETTERS * 2 / 5 } else { LETTERS };
+    let short = match about.char_indices().nth(letters) {
         Some((end, _)) => format!("{} …", about[..end].trim_end()),
         None => about.to_owned(),
     };
@@ -110,9 +139,9 @@ fn uses(op: &str) -> usize {
     USES.get(op).copied().unwrap_or_default()
 }
 
-/// The ops whose name or description contains all words of a text. Ops come first whose name begins with the text, then
-/// those with a word of the name or the short description that does, then others; among these, the ones that presets
-/// use most.
+/// The ops whose name or description, in any language, contains all words of a text. Ops come first whose name begins
+/// with the text, then those with a word of the name or the short description that does, then others; among these, the
+/// ones that presets use most.
 #[must_use]
 pub fn matches(text: &str) -> Vec<&'static str> {
     let text = text.trim().to_lowercase();
@@ -123,13 +152,15 @@ pub fn matches(text: &str) -> Vec<&'static str> {
         // Inputs of subgraphs are written by recipes that use them.
         .filter(|spec| spec.op != "input")
         .filter_map(|spec| {
-            let about = spec.doc.to_lowercase();
-            let short = orogen::declare::short(spec.doc).to_lowercase();
+            let names = Language::ALL.map(|language| language.named(spec.op).to_lowercase());
+            let about = Language::ALL.map(|language| language.told(spec.doc).to_lowercase()).join("\n");
+            let short = Language::ALL.map(|language| language.told_shortly(spec.doc).to_lowercase());
+            let has = |word: &str| names.iter().any(|name| name.contains(word)) || about.contains(word);
             let rank = match () {
-                () if text.is_empty() || spec.op.starts_with(&text) => 0,
-                () if begins(spec.op) || begins(&short) => 1,
-                () if spec.op.contains(&text) => 2,
-                () if text.split_whitespace().all(|word| spec.op.contains(word) || about.contains(word)) => 3,
+                () if text.is_empty() || names.iter().any(|name| name.starts_with(&text)) => 0,
+                () if names.iter().chain(&short).any(|words| begins(words)) => 1,
+                () if names.iter().any(|name| name.contains(&text)) => 2,
+                () if text.split_whitespace().all(has) => 3,
                 () => return None,
             };
             Some((rank, Reverse(uses(spec.op)), spec.op))
@@ -154,6 +185,7 @@ mod tests {
         assert!(at("stream-power") == 0 && at("pipes") < at("hetero") && at("droplets") < at("hetero"));
         assert_eq!(matches("")[0], "fbm", "what is used most");
         assert!(matches("no such thing").is_empty());
+        assert_eq!((matches("坡度")[0], matches("热风化")[0]), ("slope", "thermal"));
         assert_eq!(matches("").len() + 1, Node::all().len());
     }
 }

@@ -154,7 +154,7 @@ impl Inspector {
             if let Some(to) = self.name(ui, name, language) {
                 actions.push(Action::Edit(Edit::Rename { from: name.clone(), to }));
             }
-            ui.weak(spec.op).on_hover_text(spec.doc.trim());
+            ui.weak(language.named(spec.op)).on_hover_text(language.hint(spec.op, spec.doc));
         });
         ui.horizontal(|ui| {
             let is_shown = studio.look.layer == *name;
@@ -169,7 +169,7 @@ impl Inspector {
                 actions.push(Action::Command(Command::Delete));
             }
         });
-        ui.label(RichText::new(orogen::declare::short(spec.doc)).weak().small());
+        ui.label(RichText::new(language.told_shortly(spec.doc)).weak().small());
         ui.add_space(4.0);
         let inputs = node.inputs();
         for (i, input) in inputs.iter().enumerate() {
@@ -187,9 +187,13 @@ impl Inspector {
             let (value, default) = (node.param(i), default.as_ref().map(|node| node.param(i)));
             let is_default = default.as_ref() == Some(&value);
             ui.horizontal(|ui| {
-                let label =
-                    ui.label(if is_default { RichText::new(param.name) } else { RichText::new(param.name).strong() });
-                label.on_hover_text(format!("{}\n\n{}", param.doc.trim(), param.expected()));
+                let text = RichText::new(language.named(param.name));
+                let label = ui.label(if is_default { text } else { text.strong() });
+                let hint = language.hint(param.name, param.doc);
+                label.on_hover_text(format!(
+                    "{hint}\n\n{}",
+                    expected(param.range, param.unit, &param.expected(), language)
+                ));
                 if matches!(param.shape, Shape::Number | Shape::Integer) {
                     self.formula(ui, name, param.name, &value, recipe, language, actions);
                 }
@@ -219,10 +223,12 @@ impl Inspector {
             let number = Number {
                 range: param.range,
                 default: default.as_ref().and_then(Value::number).unwrap_or(0.0),
-                unit: param.unit,
+                unit: language.named(param.unit),
                 is_whole: false,
             };
-            let input = fields::value(ui, &format!("{name}.{}", param.name), param.shape, &value, &number);
+            widen_sliders(ui, language.named(param.unit));
+            let label = format!("{name}.{}", language.named(param.name));
+            let input = fields::value(ui, &label, param.shape, &value, &number, language);
             if let Some(value) = input.value {
                 actions.push(Action::Edit(Edit::Param { node: name.clone(), key: param.name.into(), value }));
             }
@@ -341,10 +347,14 @@ fn parameters(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Ve
     }
     CollapsingHeader::new(language.text("inspector.parameters")).default_open(true).show(ui, |ui| {
         for parameter in parameters {
-            ui.label(&parameter.name).on_hover_text(format!("{}\n\n{}", parameter.help, parameter.expected()));
-            let number =
-                Number { range: parameter.range, default: parameter.value, unit: &parameter.unit, is_whole: false };
-            let input = fields::number(ui, &parameter.name, parameter.value, &number);
+            let label = language.named(&parameter.name);
+            let hint = language.hint(&parameter.name, &parameter.help);
+            let expected = expected(parameter.range, &parameter.unit, &parameter.expected(), language);
+            ui.label(label).on_hover_text(format!("{hint}\n\n{expected}"));
+            let unit = language.named(&parameter.unit);
+            let number = Number { range: parameter.range, default: parameter.value, unit, is_whole: false };
+            widen_sliders(ui, unit);
+            let input = fields::number(ui, label, parameter.value, &number);
             if let Some(value) = input.value {
                 actions.push(Action::Edit(Edit::Default { parameter: parameter.name.clone(), value }));
             }
@@ -353,6 +363,26 @@ fn parameters(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Ve
             }
         }
     });
+}
+
+/// Makes sliders as wide as the panel, with room for a number and its unit.
+fn widen_sliders(ui: &mut Ui, unit: &str) {
+    let number = 80.0 + 7.0 * unit.chars().count() as f32;
+    ui.spacing_mut().slider_width = (ui.available_width() - number).max(60.0);
+}
+
+/// The valid values of a parameter; `english` says it in that language.
+fn expected(range: [f64; 2], unit: &str, english: &str, language: Language) -> String {
+    if language == Language::English {
+        return english.to_owned();
+    }
+    let bounds = match range {
+        [low, high] if low.is_finite() && high.is_finite() => format!("{low} – {high}"),
+        [low, _] if low.is_finite() => format!("≥ {low}"),
+        [_, high] if high.is_finite() => format!("≤ {high}"),
+        _ => String::new(),
+    };
+    format!("{bounds} {}", language.named(unit)).trim().to_owned()
 }
 
 /// A field for the source of an input: a node, or a number.
@@ -365,7 +395,7 @@ fn source(
     actions: &mut Vec<Action>,
 ) {
     ui.horizontal(|ui| {
-        let label = ui.label(key).on_hover_text(about);
+        let label = ui.label(language.named(key)).on_hover_text(language.hint(key, about));
         let connect =
             |source: Input| Action::Edit(Edit::Connect { node: node.to_owned(), input: key.to_owned(), source });
         let shown = match input {

@@ -4,6 +4,7 @@ use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, p
 
 use orogen::grid::words::number;
 
+use crate::catalogue::Language;
 use crate::preview::frame::Frame;
 use crate::preview::legend::Legend;
 
@@ -12,9 +13,9 @@ const RAMP: f32 = 150.0;
 const LINE: f32 = 16.0;
 
 /// Draws the legend of a picture with its upper left corner at `at`.
-pub fn draw(painter: &Painter, at: Pos2, frame: &Frame) {
+pub fn draw(painter: &Painter, at: Pos2, frame: &Frame, language: Language) {
     match &frame.legend {
-        Legend::Ramp { colors, .. } => ramp(painter, at, frame, colors),
+        Legend::Ramp { colors, .. } => ramp(painter, at, frame, colors, language),
         Legend::Entries(entries) => {
             let font = FontId::proportional(11.0);
             let lines: Vec<_> = entries
@@ -40,7 +41,7 @@ pub fn draw(painter: &Painter, at: Pos2, frame: &Frame) {
     }
 }
 
-fn ramp(painter: &Painter, at: Pos2, frame: &Frame, colors: &[[u8; 3]]) {
+fn ramp(painter: &Painter, at: Pos2, frame: &Frame, colors: &[[u8; 3]], language: Language) {
     let ticks = frame.legend.ticks();
     if ticks.is_empty() || colors.is_empty() {
         return;
@@ -53,7 +54,7 @@ fn ramp(painter: &Painter, at: Pos2, frame: &Frame, colors: &[[u8; 3]]) {
             Some((frame.legend.place(*value)?, galley))
         })
         .collect();
-    let unit = painter.layout_no_wrap(frame.unit.to_owned(), font, Color32::WHITE);
+    let unit = painter.layout_no_wrap(language.named(frame.unit).to_owned(), font, Color32::WHITE);
     let width = labels.iter().map(|(_, galley)| galley.size().x).fold(unit.size().x, f32::max);
     let head = if frame.unit.is_empty() { 8.0 } else { LINE + 6.0 };
     let size = vec2(width + 36.0, RAMP + head + 10.0);

@@ -179,7 +179,12 @@ impl MapPanel {
             label(&painter, rect.left_bottom() + Vec2::new(8.0, -8.0), Align2::LEFT_BOTTOM, &text);
         }
         scale_bar(&painter, rect, &view);
-        legend::draw(&painter, rect.min + Vec2::new(10.0, if self.kept.is_some() { 40.0 } else { 10.0 }), frame);
+        legend::draw(
+            &painter,
+            rect.min + Vec2::new(10.0, if self.kept.is_some() { 40.0 } else { 10.0 }),
+            frame,
+            language,
+        );
         self.draw_drawing(&painter, studio, screen);
         self.draw_profile(ui, &painter, rect, frame, screen);
         if is_brush {

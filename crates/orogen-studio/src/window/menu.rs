@@ -5,6 +5,7 @@ use orogen::io::palette::named;
 
 use super::action::Action;
 use super::command::{self, Command, Menu};
+use super::swatches;
 use crate::catalogue::Language;
 use crate::preview::coloring::Coloring;
 use crate::settings::{Settings, Theme};
@@ -37,6 +38,10 @@ pub fn show(ui: &mut Ui, studio: Option<&Studio>, settings: &Settings, language:
                             ui.close();
                         }
                     }
+                }
+                if let (Menu::Edit, Some(studio)) = (menu, studio) {
+                    ui.separator();
+                    history(ui, studio, language, actions);
                 }
                 if menu == Menu::View {
                     ui.separator();
@@ -93,6 +98,22 @@ pub fn is_enabled(command: Command, studio: Option<&Studio>) -> bool {
     }
 }
 
+/// The steps of the history, newest first; a click goes to one.
+fn history(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+    ui.menu_button(language.text("menu.history"), |ui| {
+        egui::ScrollArea::vertical().max_height(400.0).show(ui, |ui| {
+            let history = studio.document.history();
+            for (step, label) in history.labels().enumerate().collect::<Vec<_>>().into_iter().rev() {
+                let label = language.text(if label.is_empty() { "menu.opened" } else { label });
+                if ui.selectable_label(step == history.at(), format!("{step}   {label}")).clicked() {
+                    actions.push(Action::GoTo(step));
+                    ui.close();
+                }
+            }
+        });
+    });
+}
+
 fn preferences(ui: &mut Ui, settings: &Settings, language: Language, actions: &mut Vec<Action>) {
     ui.menu_button(language.text("menu.language"), |ui| {
         for other in Language::ALL {
@@ -117,18 +138,21 @@ fn preferences(ui: &mut Ui, settings: &Settings, language: Language, actions: &m
 /// Controls for the shown layer and its palette.
 fn shown(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
     let label = ui.label(language.text("menu.layer"));
-    let layers = ComboBox::from_id_salt("layer").selected_text(&studio.look.layer).height(400.0).show_ui(ui, |ui| {
-        for layer in studio.layers() {
-            if ui.selectable_label(layer == studio.look.layer, &layer).clicked() {
-                actions.push(Action::Show(layer));
+    let layers = ComboBox::from_id_salt("layer")
+        .selected_text(language.named(&studio.look.layer))
+        .height(400.0)
+        .show_ui(ui, |ui| {
+            for layer in studio.layers() {
+                if ui.selectable_label(layer == studio.look.layer, language.named(&layer)).clicked() {
+                    actions.push(Action::Show(layer));
+                }
             }
-        }
-    });
+        });
     layers.response.labelled_by(label.id);
     let own = &studio.look.coloring;
     let shown = match own {
         Coloring::Own => language.text("menu.own_palette"),
-        Coloring::Named(name) => name,
+        Coloring::Named(name) => language.named(name),
         Coloring::Edited(palette) => &palette.name,
         Coloring::Surfaces => language.text("colors.surfaces"),
         Coloring::Biomes => language.text("colors.biomes"),
@@ -149,13 +173,16 @@ fn shown(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Act
         }
         ui.separator();
         for palette in named::all() {
-            let entry = ui.selectable_label(matches!(own, Coloring::Named(name) if name == palette.name), palette.name);
-            if entry.on_hover_text(palette.about).clicked() {
+            let is_own = matches!(own, Coloring::Named(name) if name == palette.name);
+            if swatches::entry(ui, is_own, palette, language).clicked() {
                 actions.push(Action::Color(Coloring::Named(palette.name.to_owned())));
+                ui.close();
             }
         }
     });
-    colors.response.on_hover_text(language.text("menu.colors"));
+    let name = language.text("menu.colors");
+    colors.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name));
+    colors.response.on_hover_text(name);
     if ui.button(language.text("colors.edit")).on_hover_text(language.text("colors.edit_help")).clicked() {
         actions.push(Action::EditColors);
     }

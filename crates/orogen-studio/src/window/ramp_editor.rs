@@ -12,6 +12,7 @@ use orogen::{Error, ErrorKind, Result};
 use super::action::Action;
 use super::dialogs::window;
 use super::purpose::Purpose;
+use super::swatches;
 use crate::catalogue::Language;
 use crate::files;
 use crate::preview::coloring::Coloring;
@@ -106,7 +107,7 @@ impl RampEditor {
             .height(360.0)
             .show_ui(ui, |ui| {
                 for palette in named::all() {
-                    if ui.selectable_label(false, palette.name).on_hover_text(palette.about).clicked()
+                    if swatches::entry(ui, false, palette, language).clicked()
                         && let Ok(other) = RampEditor::new(&palette.palette(), false)
                     {
                         *self = other;

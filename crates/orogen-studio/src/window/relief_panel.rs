@@ -14,7 +14,7 @@ use crate::catalogue::Language;
 use crate::preview::contours::suiting;
 use crate::preview::frame::{Frame, Quality};
 use crate::studio::Studio;
-use crate::view::camera::Camera;
+use crate::view::camera::{Camera, Side};
 
 /// State of the view.
 #[derive(Debug)]
@@ -32,6 +32,8 @@ pub struct ReliefPanel {
     /// The sun while it is being moved; shadows are updated when it stops.
     sun: Option<[f64; 2]>,
     light: Light,
+    /// Kept cameras.
+    pub views: Vec<[f32; 6]>,
 }
 
 impl Default for ReliefPanel {
@@ -45,6 +47,7 @@ impl Default for ReliefPanel {
             has_wire: false,
             sun: None,
             light: Light::default(),
+            views: Vec::new(),
         }
     }
 }
@@ -106,7 +109,7 @@ impl ReliefPanel {
             ability,
         };
         painter.add(Callback::new_paint_callback(rect, drawing));
-        legend::draw(&painter, rect.min + egui::vec2(10.0, 10.0), frame);
+        legend::draw(&painter, rect.min + egui::vec2(10.0, 10.0), frame, language);
         if fewer < 1.0 {
             // The full picture is drawn once the movement stops.
             ui.ctx().request_repaint();
@@ -186,6 +189,7 @@ impl ReliefPanel {
                 (self.exaggeration, self.is_settled) = (Some(times), true);
             }
             ui.separator();
+            self.cameras(ui, language, actions);
             contours(ui, studio, language, actions);
             ui.toggle_value(&mut self.has_water, language.text("relief.water"));
             ui.toggle_value(&mut self.has_shadows, language.text("relief.shadows"));
@@ -200,6 +204,40 @@ impl ReliefPanel {
             list.response.on_hover_text(language.text("relief.finest"));
             if finest != studio.look.finest {
                 actions.push(Action::Finest(finest));
+            }
+        });
+    }
+
+    /// The menu of cameras: the sides of the land, and those that were kept.
+    fn cameras(&mut self, ui: &mut Ui, language: Language, actions: &mut Vec<Action>) {
+        ui.menu_button(language.text("relief.views"), |ui| {
+            for side in Side::ALL {
+                if ui.button(language.text(side.name())).clicked() {
+                    self.camera = Camera::of_side(side);
+                    ui.close();
+                }
+            }
+            ui.separator();
+            for (nth, view) in self.views.iter().enumerate() {
+                ui.horizontal(|ui| {
+                    let number = (nth + 1).to_string();
+                    if ui.button(language.fill("relief.kept_view", &[("number", &number)])).clicked() {
+                        self.camera = Camera::of_numbers(*view);
+                        ui.close();
+                    }
+                    let remove = ui.small_button("×").on_hover_text(language.text("relief.drop_view"));
+                    let name = language.text("relief.drop_view");
+                    remove.widget_info(|| {
+                        egui::WidgetInfo::labeled(egui::Role::Button, true, format!("{name} {number}"))
+                    });
+                    if remove.clicked() {
+                        actions.push(Action::DropView(nth));
+                    }
+                });
+            }
+            if ui.button(language.text("relief.keep_view")).clicked() {
+                actions.push(Action::KeepView(self.camera.numbers()));
+                ui.close();
             }
         });
     }
@@ -379,6 +417,6 @@ pub fn readout(frame: &Frame, world: [f64; 2], language: Language) -> String {
         if frame.quality == Quality::Draft { format!(" ({})", language.text("analysis.draft")) } else { String::new() };
     match frame.values {
         None => format!("{height:.1} m{draft}   {place}"),
-        Some(_) => format!("{value:.4} {}   {height:.1} m{draft}   {place}", frame.unit),
+        Some(_) => format!("{value:.4} {}   {height:.1} m{draft}   {place}", language.named(frame.unit)),
     }
 }

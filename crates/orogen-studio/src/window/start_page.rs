@@ -61,7 +61,8 @@ impl StartPage {
                 for (preset, about) in presets::all().iter().zip(&self.abouts) {
                     let picture =
                         self.pictures.iter().find(|(name, _)| *name == preset.name).map(|(_, picture)| picture);
-                    if card(ui, preset.name, about, picture) {
+                    let name = language.named(preset.name);
+                    if card(ui, name, &language.hint(preset.name, about), picture) {
                         actions.push(Action::OpenPreset(preset.name));
                     }
                 }

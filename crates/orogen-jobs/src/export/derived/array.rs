@@ -27,8 +27,8 @@ const CELLS: RangeInclusive<f64> = 1e-3..=1e6;
 /// Rows that are made at once: with their halo they stay in the cache.
 const ROWS: usize = 64;
 
-/// A layer that one filter makes of heights and of the samples next to them, with the bits that a world of these heights
-/// has.
+/// A layer that one filter makes of heights and of the samples next to them, with the bits that a world of these
+/// heights has.
 pub struct ArrayLayer<'a> {
     window: Window,
     heights: &'a [f32],
@@ -39,8 +39,8 @@ pub struct ArrayLayer<'a> {
 }
 
 impl<'a> ArrayLayer<'a> {
-    /// A layer of the heights of `window`, by rows from the north. `None` if it needs more than one filter and a halo of
-    /// one sample, or if some heights are missing: a world fills them.
+    /// A layer of the heights of `window`, by rows from the north. `None` if it needs more than one filter and a halo
+    /// of one sample, or if some heights are missing: a world fills them.
     ///
     /// # Errors
     /// If an option does not belong to the layer or is invalid.
@@ -158,7 +158,7 @@ mod tests {
     use std::sync::Arc;
 
     fn ground(width: usize, height: usize) -> Vec<f32> {
-        (0..width * height).map(|k| ((k * k % 61) as f32).mul_add(0.7, (k % width) as f32 * 3.0)).collect()
+        (0..width * height).map(|k| (k * k % 61) as f32 * 0.7 + (k % width) as f32 * 3.0).collect()
     }
 
     /// The channels of a layer, if it is one of those of an array.

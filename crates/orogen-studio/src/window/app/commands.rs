@@ -7,6 +7,7 @@ use eframe::egui::Context;
 use super::{App, Pending};
 use crate::editing::edit::Edit;
 use crate::editing::groups;
+use crate::files;
 use crate::window::command::Command;
 use crate::window::dialogs::{CommandPalette, FileDialog};
 use crate::window::export_dialog::ExportDialog;
@@ -77,6 +78,10 @@ impl App {
                 None => self.save_as(),
             },
             Command::SaveAs => self.save_as(),
+            Command::SaveVersion => match studio.document.path().map(files::next_version) {
+                Some(path) => drop(self.save(&path)),
+                None => self.save_as(),
+            },
             Command::Export => self.dialogs.export = ExportDialog::new(studio, &self.panels.relief.shown(studio)),
             Command::Undo => drop(studio.undo()),
             Command::Redo => drop(studio.redo()),

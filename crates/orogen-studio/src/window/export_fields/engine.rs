@@ -33,7 +33,7 @@ pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Languag
         if !recipe.scatter().is_empty() {
             names.extend(own.target.objects_layer().map(str::to_owned));
         }
-        if rows::names(ui, language.text("menu.layer"), &mut layer, names) {
+        if rows::names(ui, language.text("menu.layer"), &mut layer, names, language) {
             is_other = true;
             own.layer = layer;
         }
@@ -53,7 +53,7 @@ pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Languag
         }
     });
     ui.add_space(4.0);
-    ui.label(RichText::new(own.target.about).weak());
+    ui.label(RichText::new(language.told(own.target.about)).weak());
     if is_other {
         export.set_extension();
     }

@@ -1,6 +1,7 @@
 //! The fields of a layer or a mesh.
 
 use eframe::egui::Ui;
+use orogen::export::format::Format;
 use orogen::export::registry;
 
 use super::option_rows::{Fields, OptionRows};
@@ -15,8 +16,8 @@ pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Languag
     let own = &mut export.layer;
     let mut is_other = false;
     rows::grid(ui, "layer", |ui| {
-        let items: Vec<(&'static str, String)> =
-            registry::all().iter().map(|format| (format.name, format!(".{}  {}", format.name, format.about))).collect();
+        let item = |format: &Format| (format.name, format!(".{}  {}", format.name, language.told(format.about)));
+        let items: Vec<(&'static str, String)> = registry::all().iter().map(|format| item(format)).collect();
         let mut name = own.format.name;
         if rows::choice(ui, language.text("export.format"), &mut name, &items)
             && let Some(format) = registry::named(name)
@@ -26,7 +27,7 @@ pub fn show(ui: &mut Ui, export: &mut Export, studio: &Studio, language: Languag
         }
         let mut layer = own.layer.clone();
         let all = layers(own.format, studio.document.recipe());
-        if rows::names(ui, language.text("menu.layer"), &mut layer, all) {
+        if rows::names(ui, language.text("menu.layer"), &mut layer, all, language) {
             own.set_layer(&layer);
         }
         rows::samples(ui, &mut own.size, language);

@@ -46,7 +46,7 @@ impl OptionRows<'_> {
     pub fn rows(&mut self, ui: &mut Ui) {
         for spec in self.specs.iter().filter(|spec| !is_part(spec) && !WITHOUT_FIELD.contains(&spec.name)) {
             if applies(spec, self.specs, self.given) {
-                ui.label(self.label(spec)).on_hover_text(spec.about);
+                ui.label(self.label(spec)).on_hover_text(self.fields.language.told(spec.about));
                 self.field(ui, spec);
                 ui.end_row();
             }
@@ -74,7 +74,10 @@ impl OptionRows<'_> {
     fn label(&self, spec: &OptionSpec) -> Cow<'static, str> {
         match self.fields.language.find(&format!("option.{}", spec.name)) {
             Some(label) => label.into(),
-            None => sentence(spec.name).into(),
+            None => match self.fields.language.named(spec.name) {
+                name if name == spec.name => sentence(name).into(),
+                name => name.to_owned().into(),
+            },
         }
     }
 
@@ -83,9 +86,16 @@ impl OptionRows<'_> {
         self.fields.language.find(&format!("choice.{}-{word}", spec.name))
     }
 
+    /// An item of a list: something declared that is shown by its name.
+    fn name(&self, name: &str) -> (String, String) {
+        (name.to_owned(), self.fields.language.named(name).to_owned())
+    }
+
     /// An item of a list: a name and its text.
     fn item(&self, spec: &OptionSpec, name: &str, about: &str) -> (String, String) {
-        let text = self.choice(spec, name).map_or_else(|| format!("{name}  {about}"), str::to_owned);
+        let text = self
+            .choice(spec, name)
+            .map_or_else(|| format!("{name}  {}", self.fields.language.told(about)), str::to_owned);
         (name.to_owned(), text)
     }
 
@@ -113,11 +123,10 @@ impl OptionRows<'_> {
                 self.list(ui, spec, words.iter().map(|word| (word.to_string(), word.to_string())).collect());
             }
             ValueKind::Layer => {
-                self.list(ui, spec, self.fields.layers.iter().map(|name| (name.clone(), name.clone())).collect());
+                self.list(ui, spec, self.fields.layers.iter().map(|name| self.name(name)).collect());
             }
             ValueKind::Palette => {
-                let names = named::all().iter().map(|palette| palette.name.to_owned());
-                self.list(ui, spec, names.map(|name| (name.clone(), name)).collect());
+                self.list(ui, spec, named::all().iter().map(|palette| self.name(palette.name)).collect());
             }
             ValueKind::Paper => {
                 let names = paper::NAMES.iter().map(|(name, _)| (name.to_string(), name.to_string()));
@@ -149,7 +158,7 @@ impl OptionRows<'_> {
     fn switch(&mut self, ui: &mut Ui, spec: &OptionSpec, label: &str) {
         let leaves_out = leaves_out(spec);
         let mut is_on = self.given.contains_key(spec.name) != leaves_out;
-        let response = ui.add(Checkbox::new(&mut is_on, label)).on_hover_text(spec.about);
+        let response = ui.add(Checkbox::new(&mut is_on, label)).on_hover_text(self.fields.language.told(spec.about));
         let is_changed = response.changed();
         self.named(&response, Role::CheckBox, spec);
         if is_changed {
@@ -271,7 +280,7 @@ impl OptionRows<'_> {
             let [from, to] = component.ends;
             let speed = if is_whole { 0.2 } else { (value.abs() / 200.0).clamp(0.01, 100.0) };
             let field = DragValue::new(value).range::<f64>(RangeInclusive::new(from, to)).speed(speed);
-            let field = field.prefix(spec.affixes[0]).suffix(component.unit);
+            let field = field.prefix(spec.affixes[0]).suffix(self.fields.language.named(component.unit));
             let field = if is_whole { field.max_decimals(0) } else { field };
             let response = ui.add(field);
             is_changed |= response.changed();

@@ -41,8 +41,9 @@ pub fn list<T: PartialEq + Clone>(ui: &mut Ui, name: &str, value: &mut T, items:
 }
 
 /// A choice among owned names. Returns whether the selection has changed.
-pub fn names(ui: &mut Ui, name: &str, value: &mut String, names: Vec<String>) -> bool {
-    let items: Vec<(String, String)> = names.into_iter().map(|name| (name.clone(), name)).collect();
+pub fn names(ui: &mut Ui, name: &str, value: &mut String, names: Vec<String>, language: Language) -> bool {
+    let items: Vec<(String, String)> =
+        names.into_iter().map(|name| (name.clone(), language.named(&name).to_owned())).collect();
     choice(ui, name, value, &items)
 }
 

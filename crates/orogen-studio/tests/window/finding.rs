@@ -1,0 +1,94 @@
+//! Going back, finding ops and palettes, looking from other sides.
+
+use eframe::egui::{Key, Modifiers, Role};
+use egui_kittest::kittest::Queryable as _;
+use orogen::io::test_folder::TestFolder;
+use orogen_studio::catalogue::Language;
+use orogen_studio::preview::coloring::Coloring;
+
+use super::{press, studio, until_done, window};
+
+#[test]
+fn the_history_goes_to_any_step() {
+    let folder = TestFolder::new("studio-history").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    let first = studio(&harness).document.text().to_owned();
+    for _ in 0..3 {
+        press(&mut harness, Modifiers::COMMAND, Key::R);
+    }
+    let last = studio(&harness).document.text().to_owned();
+    for (entry, text) in [("0   as opened", &first), ("3   seed", &last)] {
+        harness.get_by_label("Edit").click();
+        harness.run_steps(3);
+        harness.get_by_label_contains("History").click();
+        harness.run_steps(3);
+        harness.get_by_label(entry).click();
+        harness.run_steps(3);
+        assert_eq!(studio(&harness).document.text(), text);
+    }
+}
+
+#[test]
+fn versions_are_saved_beside_the_first() {
+    let folder = TestFolder::new("studio-versions").unwrap();
+    let path = folder.join("land.toml");
+    std::fs::write(&path, orogen::presets::find("hills").unwrap().text).unwrap();
+    let mut harness = window(&folder, path.to_str(), Language::English);
+    let before = std::fs::read_to_string(&path).unwrap();
+    for version in ["land-001.toml", "land-002.toml"] {
+        press(&mut harness, Modifiers::COMMAND, Key::R);
+        press(&mut harness, Modifiers::COMMAND.plus(Modifiers::ALT), Key::S);
+        assert_eq!(studio(&harness).document.path(), Some(folder.join(version).as_path()));
+        assert_eq!(std::fs::read_to_string(folder.join(version)).unwrap(), studio(&harness).document.text());
+    }
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), before);
+}
+
+#[test]
+fn ops_are_found_in_their_groups() {
+    let folder = TestFolder::new("studio-groups").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    let before = studio(&harness).document.recipe().nodes().len();
+    press(&mut harness, Modifiers::COMMAND, Key::Space);
+    assert!(harness.query_by_label("ridged").is_none());
+    harness.get_by_label("Noise").click();
+    // The group opens in some frames.
+    harness.run_steps(30);
+    harness.get_by_label("ridged").click();
+    harness.run_steps(3);
+    assert_eq!(studio(&harness).document.recipe().nodes().len(), before + 1);
+}
+
+#[test]
+fn the_camera_looks_from_a_side_and_keeps_views() {
+    let folder = TestFolder::new("studio-cameras").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until_done(&mut harness);
+    let begun = harness.state().shown_view().unwrap().camera;
+    let choose = |harness: &mut egui_kittest::Harness<'_, _>, name: &str| {
+        harness.get_by_label("Views").click();
+        harness.run_steps(3);
+        harness.get_by_label(name).click();
+        harness.run_steps(3);
+    };
+    choose(&mut harness, "Keep this view");
+    choose(&mut harness, "From the north");
+    assert_eq!(harness.state().shown_view().unwrap().camera[0], 0.0);
+    choose(&mut harness, "View 1");
+    assert_eq!(harness.state().shown_view().unwrap().camera, begun);
+    choose(&mut harness, "Forget this view 1");
+    harness.run_steps(3);
+    assert!(harness.query_by_label("View 1").is_none());
+}
+
+#[test]
+fn palettes_are_chosen_by_their_colors() {
+    let folder = TestFolder::new("studio-swatches").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    let first = orogen::io::palette::named::all()[0].name;
+    harness.get_by_role_and_label(Role::ComboBox, "Colors of the layer").click();
+    harness.run_steps(3);
+    harness.get_by_label(first).click();
+    harness.run_steps(3);
+    assert_eq!(studio(&harness).look.coloring, Coloring::Named(first.into()));
+}
