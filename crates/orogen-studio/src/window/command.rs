@@ -36,6 +36,7 @@ pub enum Command {
     ViewAlone,
     Thumbnails,
     CommandPalette,
+    Tour,
     Shortcuts,
     About,
 }
@@ -113,7 +114,7 @@ const CTRL: Modifiers = Modifiers::COMMAND;
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// All commands, in the order of their menus.
-pub static ALL: [Entry; 32] = [
+pub static ALL: [Entry; 33] = [
     with_keys(Command::New, "command.new", Menu::File, false, CTRL, Key::N),
     with_keys(Command::Empty, "command.empty", Menu::File, false, CTRL_SHIFT, Key::N),
     with_keys(Command::Open, "command.open", Menu::File, false, CTRL, Key::O),
@@ -145,6 +146,7 @@ pub static ALL: [Entry; 32] = [
     entry(Command::Thumbnails, "command.thumbnails", Menu::View, true),
     with_keys(Command::CommandPalette, "command.command_palette", Menu::Help, false, CTRL_SHIFT, Key::P),
     with_keys(Command::Shortcuts, "command.shortcuts", Menu::Help, false, Modifiers::NONE, Key::F1),
+    entry(Command::Tour, "command.tour", Menu::Help, false),
     entry(Command::About, "command.about", Menu::Help, false),
 ];
 

@@ -172,11 +172,14 @@ fn words(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, sho
     // Labels of inputs end where the picture begins.
     let has_picture = shown.picture.is_some() && matches!(block.kind, Kind::Node(_));
     let room = if has_picture { WIDTH - PICTURE - 2.0 * GAP } else { WIDTH };
-    let left = Rect::from_min_size(rect.min, vec2(room * zoom, rect.height()));
-    let left = painter.with_clip_rect(left.intersect(painter.clip_rect()));
     for (k, input) in block.ports.iter().enumerate() {
         let place = at(rect, port(block, k), zoom, false) + vec2(8.0 * zoom, 0.0);
-        left.text(place, Align2::LEFT_CENTER, shown.language.named(&input.label), small.clone(), visuals.text_color());
+        let label = shown.language.named(&input.label).to_owned();
+        let mut job = LayoutJob::simple_singleline(label, small.clone(), visuals.text_color());
+        job.wrap = TextWrapping::truncate_at_width((room - 8.0) * zoom);
+        let galley = inside.fonts_mut(|fonts| fonts.layout_job(job));
+        let corner = Align2::LEFT_CENTER.anchor_size(place, galley.size()).min;
+        inside.galley(corner, galley, visuals.text_color());
     }
     if block.kind == Kind::Group {
         for (k, name) in block.outlets.iter().enumerate() {

@@ -67,10 +67,13 @@ impl Graph {
         // Boxes that existed before keep their positions; others get a free one.
         for is_first in [true, false] {
             for (at, place) in found.iter().enumerate() {
-                let keeps = is_old.get(at) == Some(&true) && place.is_some() && !self.is_behind(at, &found);
+                let is_behind = self.is_behind(at, &found);
+                let keeps = is_old.get(at) == Some(&true) && place.is_some() && !is_behind;
                 let Some(block) = self.scene.boxes.get(at).filter(|_| keeps == is_first) else { continue };
                 let size: [f32; 2] = graph_box::size(block, has_pictures).into();
-                let wanted: [f32; 2] = place.unwrap_or_else(|| self.wanted(at)).into();
+                // What an output reads has its place by now.
+                let wanted = place.filter(|_| !is_behind).unwrap_or_else(|| self.wanted(at));
+                let wanted: [f32; 2] = wanted.into();
                 let place = if keeps { wanted } else { arrangement::free(wanted, size, &taken) };
                 taken.push((place, size));
                 self.places.insert(self.key(block), place.into());

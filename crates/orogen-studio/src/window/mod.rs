@@ -45,4 +45,5 @@ pub mod swatches;
 pub mod text_panel;
 pub mod theme;
 pub mod tool_row;
+pub mod tour;
 pub mod variants_panel;

@@ -8,6 +8,7 @@ use super::export_dialog::ExportDialog;
 use super::ramp_editor::RampEditor;
 use super::recovery_dialog::RecoveryDialog;
 use super::relief_panel::ShownView;
+use super::tour::Tour;
 use crate::catalogue::Language;
 use crate::preview::worker::Wake;
 use crate::studio::Studio;
@@ -25,6 +26,8 @@ pub struct OpenDialogs {
     pub recovery: Option<RecoveryDialog>,
     /// The command palette.
     pub palette: Option<CommandPalette>,
+    /// The tour.
+    pub tour: Option<Tour>,
     /// Whether the list of shortcuts is shown.
     pub has_shortcuts: bool,
     /// A message: title and text.
@@ -49,6 +52,7 @@ impl OpenDialogs {
             self.export.take_if(|export| !export.show(context, shown, wake, language, actions));
         }
         self.palette.take_if(|palette| !palette.show(context, studio, language, actions));
+        self.tour.take_if(|tour| !tour.show(context, studio, language, actions));
         if self.has_shortcuts {
             self.has_shortcuts = dialogs::shortcuts(context, language);
         }

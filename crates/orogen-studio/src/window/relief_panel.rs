@@ -159,8 +159,10 @@ impl ReliefPanel {
     /// Sets the exaggeration by the first pictures of a document.
     fn settle(&mut self, frame: &Frame) {
         if !self.is_settled {
-            self.exaggeration = Some(suiting_times(frame));
-            self.is_settled = frame.quality == Quality::Fine;
+            let times = suiting_times(frame);
+            self.exaggeration = Some(times);
+            // Land that is still nearly level is no land to compare others with.
+            self.is_settled = frame.quality == Quality::Fine && times < MAX_TIMES;
         }
     }
 
@@ -374,12 +376,15 @@ impl ReliefPanel {
     }
 }
 
+/// The largest vertical exaggeration that is chosen for a land.
+const MAX_TIMES: f64 = 10.0;
+
 /// The vertical exaggeration that suits a land: the largest whole number from 1 to 10 with which the relief is at most
 /// about a seventh of the width.
 fn suiting_times(frame: &Frame) -> f64 {
     let [low, high, _] = ReliefPanel::levels(frame);
     let times = f64::from(0.3 * ReliefPanel::unit(frame) / (high - low).max(1e-3));
-    times.floor().clamp(1.0, 10.0)
+    times.floor().clamp(1.0, MAX_TIMES)
 }
 
 /// The switch for contours and, if they are on, a field for their interval; 0 chooses one that suits the land.

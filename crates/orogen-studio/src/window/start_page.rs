@@ -35,7 +35,7 @@ impl StartPage {
             ui.horizontal(|ui| {
                 ui.label(RichText::new("Orogen").size(28.0).strong());
                 ui.add_space(12.0);
-                for command in [Command::Open, Command::Empty] {
+                for command in [Command::Open, Command::Empty, Command::Tour] {
                     if let Some(entry) = command.entry()
                         && ui.button(language.text(entry.name)).clicked()
                     {

@@ -6,7 +6,7 @@ use orogen::io::test_folder::TestFolder;
 use orogen_studio::catalogue::Language;
 use orogen_studio::preview::coloring::Coloring;
 
-use super::{press, studio, until_done, window};
+use super::{press, studio, until, until_done, window};
 
 #[test]
 fn the_history_goes_to_any_step() {
@@ -91,4 +91,32 @@ fn palettes_are_chosen_by_their_colors() {
     harness.get_by_label(first).click();
     harness.run_steps(3);
     assert_eq!(studio(&harness).look.coloring, Coloring::Named(first.into()));
+}
+
+#[test]
+fn the_tour_makes_a_mountain_from_nothing() {
+    let folder = TestFolder::new("studio-tour").unwrap();
+    for language in Language::ALL {
+        let mut harness = window(&folder, None, language);
+        harness.get_by_label(language.text("command.tour")).click();
+        harness.run_steps(3);
+        let do_it = language.text("tour.do_it");
+        harness.get_by_label(do_it).click();
+        until(&mut harness, "an empty project", |app| app.studio().is_some());
+        for (nth, op) in ["ridged", "remap", "stream-power"].into_iter().enumerate() {
+            harness.run_steps(3);
+            assert_eq!(studio(&harness).document.recipe().nodes().len(), nth);
+            harness.get_by_label(do_it).click();
+            harness.run_steps(3);
+            let nodes = studio(&harness).document.recipe().nodes();
+            assert_eq!(nodes.last().unwrap().node.spec().op, op);
+        }
+        until_done(&mut harness);
+        let [low, high] = studio(&harness).frame.as_ref().unwrap().range();
+        assert!(high - low > 500.0, "{low} to {high}");
+        harness.get_by_label(do_it).click();
+        harness.run_steps(3);
+        assert!(harness.state().export_dialog().is_some());
+        assert!(harness.query_by_label(do_it).is_none(), "the tour is over");
+    }
 }

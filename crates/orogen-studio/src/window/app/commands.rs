@@ -14,6 +14,7 @@ use crate::window::export_dialog::ExportDialog;
 use crate::window::menu;
 use crate::window::panels::{Below, View};
 use crate::window::purpose::Purpose;
+use crate::window::tour::Tour;
 
 impl App {
     /// Carries out a command, if it is available.
@@ -30,6 +31,7 @@ impl App {
             }
             Command::Quit => self.leave(Pending::Quit, context),
             Command::CommandPalette => self.dialogs.palette = Some(CommandPalette::default()),
+            Command::Tour => self.dialogs.tour = Some(Tour::default()),
             Command::Shortcuts => self.dialogs.has_shortcuts = true,
             Command::About => {
                 let text = self.language.fill("about.text", &[("version", env!("CARGO_PKG_VERSION"))]);
