@@ -13,7 +13,7 @@ use super::ground::{Ground, set_colors};
 use super::references::{Change, Site, change};
 use super::strokes::{self, Placement};
 use super::tables::{add_node, node, set, top, value_of};
-use super::{drawing, groups, names};
+use super::{drawing, groups, names, notes};
 
 /// An edit.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +31,8 @@ pub enum Edit {
     Param { node: String, key: String, value: Value },
     /// Resets a parameter of a node to its default.
     Reset { node: String, key: String },
+    /// Sets the note of a node: the comment above it.
+    Note { node: String, text: String },
     /// Sets an input of a node, or its `mask`, to another node or layer, a number, or nothing.
     Connect { node: String, input: String, source: Input },
     /// Sets an output to a node or layer, or removes it.
@@ -77,6 +79,7 @@ impl Edit {
             Edit::Default { .. } | Edit::Param { .. } => "edit.value",
             Edit::Colors { .. } => "edit.colors",
             Edit::Reset { .. } => "edit.reset",
+            Edit::Note { .. } => "edit.note",
             Edit::Connect { .. } | Edit::Output { .. } => "edit.connect",
             Edit::Add { .. } => "edit.add",
             Edit::Stroke { .. } => "edit.stroke",
@@ -97,6 +100,7 @@ impl Edit {
             Edit::Size(_) => Some("world/size".into()),
             Edit::Default { parameter, .. } => Some(format!("parameter/{parameter}")),
             Edit::Param { node, key, .. } => Some(format!("node/{node}/{key}")),
+            Edit::Note { node, .. } => Some(format!("note/{node}")),
             Edit::Colors { ground, index, .. } => Some(format!("colors/{ground:?}/{index}")),
             Edit::Stroke { node, at, .. } => Some(format!("stroke/{node}/{at}")),
             _ => None,
@@ -170,6 +174,10 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
             let own = node(&mut document, name).ok_or_else(|| missing(&format!("node `{name}`")))?;
             let key = written_key(own.get("op").and_then(Item::as_str), key, |key| own.contains_key(key));
             set(own, &key, value);
+        }
+        Edit::Note { node: name, text } => {
+            written(name)?;
+            notes::set(&mut document, name, text)?;
         }
         Edit::Reset { node: name, key } => {
             written(name)?;

@@ -11,6 +11,7 @@ pub mod ground;
 pub mod groups;
 pub mod history;
 pub mod names;
+pub mod notes;
 mod references;
 pub mod strokes;
 mod tables;

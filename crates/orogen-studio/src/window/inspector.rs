@@ -1,5 +1,7 @@
 //! The panel next to the view: the world, the recipe's parameters, and the selected node.
 
+use std::collections::HashMap;
+
 use eframe::egui::{self, CollapsingHeader, ComboBox, DragValue, Id, RichText, TextEdit, Ui};
 use orogen::declare::{Input, Shape};
 use orogen::node::Node;
@@ -14,7 +16,7 @@ use super::ground;
 use crate::catalogue::Language;
 use crate::editing::edit::Edit;
 use crate::editing::expression::Site;
-use crate::editing::{groups, names};
+use crate::editing::{groups, names, notes};
 use crate::studio::Studio;
 
 /// State of the panel.
@@ -26,6 +28,8 @@ pub struct Inspector {
     wants_focus: bool,
     /// Expressions that are being typed.
     expressions: ExpressionFields,
+    /// The notes of nodes, of a revision of the document.
+    notes: Option<(u64, HashMap<String, String>)>,
 }
 
 impl Inspector {
@@ -92,6 +96,26 @@ impl Inspector {
                 }
             }
             false => self.expressions.begin(site, "", &format!(" {}", value.to_toml())),
+        }
+    }
+
+    /// A field for the note of a node.
+    fn note(&mut self, ui: &mut Ui, name: &str, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+        let revision = studio.document.revision();
+        if self.notes.as_ref().is_none_or(|(of, _)| *of != revision) {
+            self.notes = Some((revision, notes::all(studio.document.text()).into_iter().collect()));
+        }
+        let Some(note) = self.notes.as_ref().and_then(|(_, notes)| notes.get(name)) else { return };
+        let mut typed = note.clone();
+        let hint = language.text("inspector.note");
+        let field = TextEdit::multiline(&mut typed).desired_rows(1).desired_width(f32::INFINITY).hint_text(hint);
+        let field = ui.add(field.font(egui::TextStyle::Small));
+        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::MultilineTextInput, true, hint));
+        if field.changed() {
+            actions.push(Action::Edit(Edit::Note { node: name.to_owned(), text: typed }));
+        }
+        if field.lost_focus() {
+            actions.push(Action::EndGesture);
         }
     }
 
@@ -170,6 +194,7 @@ impl Inspector {
             }
         });
         ui.label(RichText::new(language.told_shortly(spec.doc)).weak().small());
+        self.note(ui, name, studio, language, actions);
         ui.add_space(4.0);
         let inputs = node.inputs();
         for (i, input) in inputs.iter().enumerate() {

@@ -120,3 +120,20 @@ fn the_tour_makes_a_mountain_from_nothing() {
         assert!(harness.query_by_label(do_it).is_none(), "the tour is over");
     }
 }
+
+#[test]
+fn a_node_has_a_note_in_the_recipe() {
+    let folder = TestFolder::new("studio-note").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    harness.run_steps(3);
+    harness.get_by_label("node terrain").click();
+    harness.run_steps(3);
+    harness.get_by_role_and_label(Role::MultilineTextInput, "Note").focus();
+    harness.run_steps(2);
+    press(&mut harness, Modifiers::COMMAND, Key::A);
+    harness.get_by_role_and_label(Role::MultilineTextInput, "Note").type_text("from -160 to 240 m");
+    harness.run_steps(3);
+    let text = studio(&harness).document.text();
+    assert!(text.contains("# from -160 to 240 m\n[nodes.terrain]\n"), "{text}");
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+}
