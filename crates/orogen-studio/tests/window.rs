@@ -8,6 +8,8 @@ mod export;
 mod finding;
 #[path = "window/manners.rs"]
 mod manners;
+#[path = "window/random.rs"]
+mod random;
 #[path = "window/unsaved.rs"]
 mod unsaved;
 #[path = "window/views.rs"]

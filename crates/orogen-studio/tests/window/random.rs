@@ -1,0 +1,152 @@
+//! Random commands, clicks, keys and words, with undo in between: nothing panics, and all of it can be undone.
+
+use eframe::egui::{Event, Key, Modifiers, Role, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use orogen::io::test_folder::TestFolder;
+use orogen_studio::catalogue::Language;
+use orogen_studio::window::app::App;
+use orogen_studio::window::command::{self, Command};
+use std::time::{Duration, Instant};
+
+use super::window;
+
+/// Commands that write files, or end the window.
+const LEFT_OUT: [Command; 6] =
+    [Command::Save, Command::SaveAs, Command::SaveVersion, Command::Export, Command::Open, Command::Quit];
+
+/// Commands that change the recipe.
+const CHANGES: [Command; 7] = [
+    Command::NextSeed,
+    Command::AddNode,
+    Command::Duplicate,
+    Command::Delete,
+    Command::Group,
+    Command::Ungroup,
+    Command::Redo,
+];
+
+/// A random number generator (xorshift64, Marsaglia 2003).
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, end: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 % end.max(1) as u64) as usize
+    }
+
+    fn of<T: Copy>(&mut self, all: &[T]) -> Option<T> {
+        all.get(self.below(all.len())).copied()
+    }
+}
+
+/// Whether a control with this name writes a file, or leads to one that does.
+fn writes(name: &str) -> bool {
+    ["Save", "Export", "Open", "Quit", "Copy", "folder", "File", "Delete them", "Load"]
+        .iter()
+        .any(|word| name.contains(word))
+}
+
+/// Does something that a user could do.
+fn act(harness: &mut Harness<'static, App>, random: &mut Random) {
+    match random.below(14) {
+        at @ 0..=3 => {
+            // Half of them change the recipe.
+            let is_chosen = |command: &Command| match at {
+                0 | 1 => !LEFT_OUT.contains(command),
+                _ => CHANGES.contains(command),
+            };
+            let keys: Vec<_> = command::ALL
+                .iter()
+                .filter(|entry| is_chosen(&entry.command))
+                .flat_map(|entry| entry.shortcuts())
+                .collect();
+            if let Some(keys) = random.of(&keys) {
+                harness.key_press_modifiers(keys.modifiers, keys.logical_key);
+            }
+        }
+        4 => harness.key_press_modifiers(Modifiers::COMMAND, Key::Z),
+        5 => {
+            let key = random.of(&[Key::Escape, Key::Enter, Key::Delete, Key::Tab, Key::ArrowDown, Key::Home, Key::F2]);
+            key.into_iter().for_each(|key| harness.key_press(key));
+        }
+        6 => {
+            let word = random.of(&["a", "0.5", "-1e9", "fbm", "名", "\n", "[nodes.", "= height * 2"]);
+            harness.event(Event::Text(word.unwrap_or_default().to_owned()));
+        }
+        7 => {
+            let size = harness.ctx.content_rect().size();
+            let at = vec2(random.below(size.x as usize) as f32, random.below(size.y as usize) as f32).to_pos2();
+            harness.event(Event::PointerMoved(at));
+            harness.event(Event::MouseWheel {
+                unit: eframe::egui::MouseWheelUnit::Point,
+                delta: vec2(0.0, random.below(200) as f32 - 100.0),
+                phase: eframe::egui::TouchPhase::Move,
+                modifiers: Modifiers::NONE,
+                source: eframe::egui::MouseWheelSource::Unknown,
+            });
+        }
+        _ => {
+            let role = random.of(&[
+                Role::Button,
+                Role::Button,
+                Role::CheckBox,
+                Role::ComboBox,
+                Role::Slider,
+                Role::SpinButton,
+                Role::TextInput,
+                Role::MultilineTextInput,
+                Role::Unknown,
+            ]);
+            let Some(role) = role else { return };
+            let all: Vec<_> = harness
+                .query_all_by_role(role)
+                .filter(|node| !writes(&node.accesskit_node().label().unwrap_or_default()))
+                .collect();
+            if !all.is_empty() {
+                all[random.below(all.len())].click();
+            }
+        }
+    }
+    harness.step();
+}
+
+fn play(seed: u64, lasts: Duration) {
+    let folder = TestFolder::new("studio-random").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    let mut random = Random(seed);
+    let begun = Instant::now();
+    let mut steps = 0;
+    while begun.elapsed() < lasts && !harness.state().is_closing() {
+        act(&mut harness, &mut random);
+        steps += 1;
+    }
+    assert!(!harness.state().is_closing(), "step {steps}");
+}
+
+/// The short form, which measures no time: some hundred steps.
+#[test]
+fn random_commands_do_no_harm() {
+    let folder = TestFolder::new("studio-random").unwrap();
+    let mut changes = 0;
+    for seed in [1, 2, 3] {
+        let mut harness = window(&folder, Some("classic"), Language::English);
+        let mut random = Random(seed);
+        for _ in 0..400 {
+            act(&mut harness, &mut random);
+        }
+        assert!(!harness.state().is_closing());
+        changes += harness.state().studio().map_or(0, |studio| studio.document.revision());
+    }
+    assert!(changes > 30, "{changes}");
+}
+
+#[test]
+#[ignore = "long: thirty minutes of random commands"]
+fn thirty_minutes_of_random_commands_do_no_harm() {
+    for seed in 1..=60 {
+        play(seed, Duration::from_secs(30));
+    }
+}
