@@ -392,7 +392,8 @@ fn parameters(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Ve
 
 /// Makes sliders as wide as the panel, with room for a number and its unit.
 fn widen_sliders(ui: &mut Ui, unit: &str) {
-    let number = 80.0 + 7.0 * unit.chars().count() as f32;
+    // Room for eight digits: a row that is wider than the panel would widen it.
+    let number = 104.0 + 7.5 * unit.chars().count() as f32;
     ui.spacing_mut().slider_width = (ui.available_width() - number).max(60.0);
 }
 
