@@ -23,6 +23,7 @@ __all__ = [
     "fit",
     "flow_direction",
     "lakes",
+    "layer",
     "memory_of",
     "noise",
     "pipes",
