@@ -11,9 +11,16 @@ use std::time::{Duration, Instant};
 
 use super::window;
 
-/// Commands that write files, or end the window.
-const LEFT_OUT: [Command; 6] =
-    [Command::Save, Command::SaveAs, Command::SaveVersion, Command::Export, Command::Open, Command::Quit];
+/// Commands that write files, or end the window, and the list from which any command is chosen.
+const LEFT_OUT: [Command; 7] = [
+    Command::Save,
+    Command::SaveAs,
+    Command::SaveVersion,
+    Command::Export,
+    Command::Open,
+    Command::Quit,
+    Command::CommandPalette,
+];
 
 /// Commands that change the recipe.
 const CHANGES: [Command; 7] = [
@@ -111,6 +118,14 @@ fn act(harness: &mut Harness<'static, App>, random: &mut Random) {
         }
     }
     harness.step();
+    // No file is chosen: what is done at random must not reach any outside the test's folder.
+    while harness.query_by_role_and_label(Role::TextInput, "file name").is_some()
+        || harness.state().export_dialog().is_some()
+    {
+        harness.key_press(Key::Escape);
+        harness.step();
+    }
+    assert_eq!(harness.state().studio().and_then(|studio| studio.document.path()), None);
 }
 
 fn play(seed: u64, lasts: Duration) {
