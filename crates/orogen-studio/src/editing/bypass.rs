@@ -1,17 +1,17 @@
-//! Nodes that are left out for a while: with a mask of 0 a node gives its first input.
+//! Bypassed nodes: with a mask of 0 a node passes its first input on.
 
 use orogen::declare::Input;
 use orogen::recipe::document::NamedNode;
 
 use super::edit::Edit;
 
-/// Whether a node is left out.
+/// Whether a node is bypassed.
 #[must_use]
 pub fn is_bypassed(named: &NamedNode) -> bool {
     named.mask == Input::Value(0.0)
 }
 
-/// The edit that leaves a node out, or uses it again; `None` for a node that has no input to give instead, or whose
+/// The edit that bypasses a node, or ends that; `None` for a node that has no input to pass on, or whose
 /// mask would be lost.
 #[must_use]
 pub fn toggled(named: &NamedNode) -> Option<Edit> {
@@ -33,7 +33,7 @@ mod tests {
         [nodes.part]\nop = \"blur\"\nsource = \"soft\"\nmask = \"hills\"\n[outputs]\nheight = \"part\"\n";
 
     #[test]
-    fn a_node_is_left_out_and_used_again() {
+    fn a_node_is_bypassed_and_used_again() {
         let mut document = Document::new("test", TEXT.to_owned()).unwrap();
         let named = |document: &Document, name: &str| {
             document.recipe().nodes().iter().find(|named| named.name == name).unwrap().clone()

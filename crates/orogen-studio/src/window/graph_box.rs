@@ -87,7 +87,7 @@ pub fn port_near(block: &GraphBox, y: f32) -> Option<usize> {
 pub struct Shown<'a> {
     /// Whether it is selected.
     pub is_selected: bool,
-    /// Whether it is left out.
+    /// Whether it is bypassed: its title is dim.
     pub is_bypassed: bool,
     /// Whether the view shows its layer.
     pub is_in_view: bool,
@@ -113,12 +113,6 @@ pub fn draw(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, 
     let title = Rect::from_min_max(rect.min, pos2(rect.right(), rect.top() + TITLE * zoom));
     let own = if shown.is_bypassed { color(block.kind).gamma_multiply(0.35) } else { color(block.kind) };
     painter.rect_filled(title, round, own);
-    if shown.is_bypassed {
-        // A line past the box, as the heights go.
-        let y = rect.bottom() - 6.0 * zoom;
-        let line = [pos2(rect.left() + 8.0 * zoom, y), pos2(rect.right() - 8.0 * zoom, y)];
-        painter.line_segment(line, Stroke::new(2.0 * zoom, visuals.weak_text_color()));
-    }
     let border = match shown.is_selected {
         true => Stroke::new(2.5, visuals.selection.stroke.color),
         false => Stroke::new(1.0, visuals.window_stroke.color),

@@ -3,6 +3,7 @@
 use eframe::egui::{Event, Key, Modifiers, Role, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use orogen::grid::random::Random;
 use orogen::io::test_folder::TestFolder;
 use orogen_studio::catalogue::Language;
 use orogen_studio::window::app::App;
@@ -33,20 +34,9 @@ const CHANGES: [Command; 7] = [
     Command::Redo,
 ];
 
-/// A random number generator (xorshift64, Marsaglia 2003).
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, end: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 % end.max(1) as u64) as usize
-    }
-
-    fn of<T: Copy>(&mut self, all: &[T]) -> Option<T> {
-        all.get(self.below(all.len())).copied()
-    }
+/// One of several things.
+fn any<T: Copy>(random: &mut Random, all: &[T]) -> Option<T> {
+    if all.is_empty() { None } else { Some(all[random.below(all.len())]) }
 }
 
 /// Whether a control with this name writes a file, or leads to one that does.
@@ -70,17 +60,18 @@ fn act(harness: &mut Harness<'static, App>, random: &mut Random) {
                 .filter(|entry| is_chosen(&entry.command))
                 .flat_map(|entry| entry.shortcuts())
                 .collect();
-            if let Some(keys) = random.of(&keys) {
+            if let Some(keys) = any(random, &keys) {
                 harness.key_press_modifiers(keys.modifiers, keys.logical_key);
             }
         }
         4 => harness.key_press_modifiers(Modifiers::COMMAND, Key::Z),
         5 => {
-            let key = random.of(&[Key::Escape, Key::Enter, Key::Delete, Key::Tab, Key::ArrowDown, Key::Home, Key::F2]);
+            let key =
+                any(random, &[Key::Escape, Key::Enter, Key::Delete, Key::Tab, Key::ArrowDown, Key::Home, Key::F2]);
             key.into_iter().for_each(|key| harness.key_press(key));
         }
         6 => {
-            let word = random.of(&["a", "0.5", "-1e9", "fbm", "名", "\n", "[nodes.", "= height * 2"]);
+            let word = any(random, &["a", "0.5", "-1e9", "fbm", "名", "\n", "[nodes.", "= height * 2"]);
             harness.event(Event::Text(word.unwrap_or_default().to_owned()));
         }
         7 => {
@@ -96,17 +87,20 @@ fn act(harness: &mut Harness<'static, App>, random: &mut Random) {
             });
         }
         _ => {
-            let role = random.of(&[
-                Role::Button,
-                Role::Button,
-                Role::CheckBox,
-                Role::ComboBox,
-                Role::Slider,
-                Role::SpinButton,
-                Role::TextInput,
-                Role::MultilineTextInput,
-                Role::Unknown,
-            ]);
+            let role = any(
+                random,
+                &[
+                    Role::Button,
+                    Role::Button,
+                    Role::CheckBox,
+                    Role::ComboBox,
+                    Role::Slider,
+                    Role::SpinButton,
+                    Role::TextInput,
+                    Role::MultilineTextInput,
+                    Role::Unknown,
+                ],
+            );
             let Some(role) = role else { return };
             let all: Vec<_> = harness
                 .query_all_by_role(role)
@@ -131,7 +125,7 @@ fn act(harness: &mut Harness<'static, App>, random: &mut Random) {
 fn play(seed: u64, lasts: Duration) {
     let folder = TestFolder::new("studio-random").unwrap();
     let mut harness = window(&folder, Some("classic"), Language::English);
-    let mut random = Random(seed);
+    let mut random = Random::new(seed, 0);
     let begun = Instant::now();
     let mut steps = 0;
     while begun.elapsed() < lasts && !harness.state().is_closing() {
@@ -148,7 +142,7 @@ fn random_commands_do_no_harm() {
     let mut changes = 0;
     for seed in [1, 2, 3] {
         let mut harness = window(&folder, Some("classic"), Language::English);
-        let mut random = Random(seed);
+        let mut random = Random::new(seed, 0);
         for _ in 0..400 {
             act(&mut harness, &mut random);
         }
