@@ -1,9 +1,12 @@
 //! Settings that are remembered between runs.
 
+pub mod layout;
+
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use self::layout::Layout;
 use crate::catalogue::Language;
 use crate::files;
 
@@ -43,10 +46,8 @@ pub struct Settings {
     pub views: Vec<[f32; 6]>,
     /// Whether nodes of the graph show small pictures.
     pub thumbnails: bool,
-    /// Whether the panel below the view is shown.
-    pub has_below: bool,
-    /// Whether the parameters of the selected node are shown.
-    pub has_inspector: bool,
+    /// The layout of the window.
+    pub layout: Layout,
 }
 
 /// The default of [`Settings::memory`].
@@ -63,8 +64,7 @@ impl Default for Settings {
             memory: MEMORY,
             views: Vec::new(),
             thumbnails: true,
-            has_below: true,
-            has_inspector: true,
+            layout: Layout::default(),
         }
     }
 }
@@ -80,6 +80,7 @@ impl Settings {
         settings.recent.truncate(RECENT);
         settings.scale = if settings.scale.is_finite() { settings.scale.clamp(0.5, 3.0) } else { 1.0 };
         settings.memory = settings.memory.max(256 << 20);
+        settings.layout = settings.layout.sound();
         settings
     }
 
@@ -106,6 +107,7 @@ impl Settings {
 
 #[cfg(test)]
 mod tests {
+    use super::layout::View;
     use super::*;
     use orogen::io::test_folder::TestFolder;
 
@@ -130,7 +132,9 @@ mod tests {
             files::write(&folder.join(FILE), text).unwrap();
             assert_eq!(Settings::read(Some(&folder)), Settings::default(), "{text}");
         }
-        files::write(&folder.join(FILE), r#"{"scale": 100, "later": 1}"#).unwrap();
-        assert_eq!(Settings::read(Some(&folder)).scale, 3.0);
+        files::write(&folder.join(FILE), r#"{"scale": 100, "later": 1, "layout": {"view": "both", "height": -3}}"#)
+            .unwrap();
+        let read = Settings::read(Some(&folder));
+        assert_eq!((read.scale, read.layout.view, read.layout.height), (3.0, View::Both, None));
     }
 }

@@ -117,7 +117,7 @@ impl Studio {
                 name.clone_from(to);
             }
         }
-        match edit {
+        match edit.steps().first().unwrap_or(edit) {
             Edit::Delete(names) => self.selected.retain(|name| !names.contains(name)),
             Edit::Add { name, .. } => self.selected = vec![name.clone()],
             Edit::Stroke { node, .. } => {

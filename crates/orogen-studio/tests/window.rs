@@ -10,6 +10,8 @@ mod finding;
 mod manners;
 #[path = "window/random.rs"]
 mod random;
+#[path = "window/tools.rs"]
+mod tools;
 #[path = "window/unsaved.rs"]
 mod unsaved;
 #[path = "window/views.rs"]
@@ -264,6 +266,8 @@ fn a_line_is_drawn_on_the_map_and_its_points_are_moved() {
         click_at(&mut harness, place);
     }
     press(&mut harness, Modifiers::NONE, Key::Enter);
+    harness.get_by_label("Only keep the drawing").click();
+    harness.run_steps(3);
     let points = |harness: &Harness<'_, App>| {
         let recipe = studio(harness).document.recipe();
         let named = recipe.nodes().iter().find(|named| named.name == "path").unwrap();

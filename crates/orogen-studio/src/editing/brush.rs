@@ -108,7 +108,7 @@ fn rounded(number: f64, digits: i32) -> f64 {
 }
 
 /// The largest of 1, 2, 5, 10, 20 and so on that is not larger.
-fn round_number(number: f64) -> f64 {
+pub(super) fn round_number(number: f64) -> f64 {
     let number = number.clamp(RADII[0], RADII[1]);
     let power = libm::log10(number).floor() as i32;
     let steps = [5.0, 2.0, 1.0].map(|step| rounded(step * libm::pow(10.0, f64::from(power)), -power));

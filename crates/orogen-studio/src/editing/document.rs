@@ -254,8 +254,11 @@ impl Document {
         if !self.is_valid() {
             return Err(fault("the recipe's text has errors; mend them first".into()));
         }
-        let text = edit::apply(self.text(), &self.recipe, edit).map_err(fault)?;
-        let recipe = self.parse(&text)?;
+        let (mut text, mut recipe) = (self.text().to_owned(), self.recipe.clone());
+        for step in edit.steps() {
+            text = edit::apply(&text, &recipe, step).map_err(fault)?;
+            recipe = self.parse(&text)?;
+        }
         Ok((text, recipe))
     }
 

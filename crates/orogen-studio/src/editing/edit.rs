@@ -57,6 +57,8 @@ pub enum Edit {
     Ungroup(String),
     /// Renames a group.
     RenameGroup { from: String, to: String },
+    /// Several edits, one after another, which are undone together. They rename nothing.
+    Several(Vec<Edit>),
 }
 
 /// What reads a node.
@@ -88,6 +90,16 @@ impl Edit {
             Edit::Rename { .. } | Edit::RenameGroup { .. } => "edit.rename",
             Edit::Group { .. } => "edit.group",
             Edit::Ungroup(_) => "edit.ungroup",
+            Edit::Several(edits) => edits.first().map_or("edit.value", Edit::label),
+        }
+    }
+
+    /// The edits of which it consists, in their order: each is of the recipe that the ones before it left.
+    #[must_use]
+    pub fn steps(&self) -> &[Edit] {
+        match self {
+            Edit::Several(edits) => edits,
+            one => std::slice::from_ref(one),
         }
     }
 
@@ -120,7 +132,7 @@ pub fn renames(recipe: &Recipe, edit: &Edit) -> Vec<(String, String)> {
     }
 }
 
-/// Applies an edit to the text of a recipe; `recipe` is the parsed text.
+/// Applies one of an edit's [steps](Edit::steps) to the text of a recipe; `recipe` is the parsed text.
 ///
 /// # Errors
 /// If the text is not TOML, or has no such node, parameter or key; the message says which.
@@ -240,6 +252,7 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
             }
             rename(&mut document, recipe, &renames)?;
         }
+        Edit::Several(_) => return Err("several edits are applied one by one".into()),
     }
     Ok(document.to_string())
 }

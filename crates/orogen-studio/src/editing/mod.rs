@@ -5,6 +5,7 @@ pub mod brush;
 pub mod bypass;
 pub mod document;
 pub mod drawing;
+pub mod drawing_use;
 pub mod edit;
 pub mod expression;
 pub mod ground;

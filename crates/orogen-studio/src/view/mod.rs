@@ -2,6 +2,7 @@
 
 pub mod arrangement;
 pub mod camera;
+pub mod land;
 pub mod map_view;
 pub mod scene;
 pub mod sun;

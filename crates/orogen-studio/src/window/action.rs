@@ -11,6 +11,7 @@ use crate::preview::coloring::Coloring;
 use crate::preview::region::Region;
 use crate::recovery::Unsaved;
 use crate::settings::Theme;
+use crate::settings::layout::Layout;
 
 /// An action of the user.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,13 +62,15 @@ pub enum Action {
     DropUnsaved(Unsaved),
     /// Saves the document to a file.
     Save(PathBuf),
+    /// Sets the layout of the window.
+    Layout(Layout),
     /// Sets the language of the interface.
     Language(Language),
     /// Sets the color theme of the interface.
     Theme(Theme),
-    /// Starts drawing a line or an area on the map, by its op.
+    /// Starts drawing a line or an area, by its op.
     Draw(&'static str),
-    /// Selects a brush on the map.
+    /// Selects a brush.
     Brush(Effect),
     /// Shows a group in the graph.
     Enter(String),

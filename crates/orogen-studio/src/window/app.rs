@@ -16,7 +16,7 @@ use super::device::DeviceWatch;
 use super::dialogs::{self, Decision, FileDialog};
 use super::export_dialog::ExportDialog;
 use super::open_dialogs::OpenDialogs;
-use super::panels::{Below, Panels, Shown, View};
+use super::panels::{Panels, Shown};
 use super::ramp_editor::RampEditor;
 use super::recovery_dialog::{self, RecoveryDialog};
 use super::relief::Ability;
@@ -30,6 +30,7 @@ use crate::preview::colors::palette;
 use crate::preview::worker::Wake;
 use crate::recovery::{Recovery, Unsaved};
 use crate::settings::Settings;
+use crate::settings::layout::Below;
 use crate::studio::{self, Studio};
 
 /// An action that waits until the user has decided about unsaved changes.
@@ -302,6 +303,8 @@ impl App {
                 theme::set(context, theme);
                 self.remember();
             }
+            // It is remembered with what is remembered next, and when the window closes.
+            Action::Layout(layout) => self.settings.layout = layout,
             Action::KeepView(view) => {
                 self.settings.views.push(view);
                 self.show_kept_views();
@@ -312,12 +315,12 @@ impl App {
                 self.show_kept_views();
             }
             Action::Draw(op) => {
-                self.panels.view = View::Map;
-                self.panels.map.draw(op);
+                self.show_map();
+                self.panels.tools.draw_op(op);
             }
             Action::Brush(effect) => {
-                self.panels.view = View::Map;
-                self.panels.map.take_brush(effect);
+                self.show_map();
+                self.panels.tools.take_brush(effect);
             }
             Action::Enter(group) => {
                 self.show_below(Below::Graph);

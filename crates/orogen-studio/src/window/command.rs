@@ -25,6 +25,8 @@ pub enum Command {
     Ungroup,
     ShowRelief,
     ShowMap,
+    ShowBoth,
+    ShowWindows,
     ShowGraph,
     ShowText,
     ShowAnalysis,
@@ -114,7 +116,7 @@ const CTRL: Modifiers = Modifiers::COMMAND;
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// All commands, in the order of their menus.
-pub static ALL: [Entry; 33] = [
+pub static ALL: [Entry; 35] = [
     with_keys(Command::New, "command.new", Menu::File, false, CTRL, Key::N),
     with_keys(Command::Empty, "command.empty", Menu::File, false, CTRL_SHIFT, Key::N),
     with_keys(Command::Open, "command.open", Menu::File, false, CTRL, Key::O),
@@ -134,6 +136,8 @@ pub static ALL: [Entry; 33] = [
     with_keys(Command::Ungroup, "command.ungroup", Menu::Edit, true, CTRL_SHIFT, Key::G),
     with_keys(Command::ShowRelief, "command.show_relief", Menu::View, true, CTRL, Key::Num1),
     with_keys(Command::ShowMap, "command.show_map", Menu::View, true, CTRL, Key::Num2),
+    with_keys(Command::ShowBoth, "command.show_both", Menu::View, true, CTRL, Key::Num8),
+    with_keys(Command::ShowWindows, "command.show_windows", Menu::View, true, CTRL, Key::Num9),
     with_keys(Command::ShowGraph, "command.show_graph", Menu::View, true, CTRL, Key::Num3),
     with_keys(Command::ShowText, "command.show_text", Menu::View, true, CTRL, Key::Num4),
     with_keys(Command::ShowAnalysis, "command.show_analysis", Menu::View, true, CTRL, Key::Num5),

@@ -1,22 +1,19 @@
-//! The map: pan and zoom, values under the pointer, a profile along a line.
+//! The map: pan and zoom, values under the pointer, a comparison with a kept picture.
 
 use std::sync::Arc;
 
 use eframe::egui::{
-    self, Align2, Color32, ColorImage, FontId, Key, PointerButton, Rect, Sense, Stroke, TextureHandle, TextureOptions,
-    Ui, UiBuilder, Vec2, pos2,
+    self, Align2, Color32, ColorImage, PointerButton, Pos2, Rect, Response, Sense, Stroke, TextureHandle,
+    TextureOptions, Ui, Vec2, pos2,
 };
 
 use super::action::Action;
 use super::contour_lines::ContourLines;
 use super::label::label;
-use super::map_brush::{self, MapBrush};
 use super::relief_panel::{contours, readout};
+use super::tools::{Projection, Tools};
 use super::{legend, tool_row};
 use crate::catalogue::Language;
-use crate::editing::brush::Effect;
-use crate::editing::edit::Edit;
-use crate::editing::{drawing, names};
 use crate::preview::frame::{self, Frame};
 use crate::preview::region::Region;
 use crate::studio::Studio;
@@ -28,19 +25,11 @@ pub struct MapPanel {
     view: Option<MapView>,
     /// The picture, and the identity of its frame.
     texture: Option<(TextureHandle, frame::Key)>,
-    /// The ends of the profile, in metres.
-    profile: Option<[[f64; 2]; 2]>,
-    tool: Tool,
-    brush: MapBrush,
-    /// The points of the current drawing.
-    drawn: Vec<[f64; 2]>,
     /// The last requested region.
     asked: Option<Region>,
     /// The picture that later ones are compared with.
     kept: Option<Kept>,
     contours: ContourLines,
-    /// Whether a menu or list was open in the previous frame.
-    had_popup: bool,
 }
 
 /// A picture that is kept for a comparison.
@@ -56,35 +45,6 @@ struct Kept {
     is_beside: bool,
 }
 
-/// The action of a drag or a click on the map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum Tool {
-    /// Moves the map.
-    #[default]
-    Pan,
-    /// Draws the line of a profile.
-    Profile,
-    /// Draws a line or an area, by its op.
-    Draw(&'static str),
-    /// Paints with a brush.
-    Brush(Effect),
-}
-
-impl Tool {
-    /// The catalog key of its help.
-    fn help(self) -> &'static str {
-        match self {
-            Tool::Pan => "map.pan_help",
-            Tool::Profile => "map.profile_help",
-            Tool::Draw(_) => "map.draw_help",
-            Tool::Brush(effect) => map_brush::names(effect)[1],
-        }
-    }
-}
-
-/// Height of the row with the settings of a tool, in points.
-const ROW: f32 = 24.0;
-
 /// Maximum side of a picture.
 const LARGEST: usize = 4096;
 
@@ -95,20 +55,18 @@ impl MapPanel {
     }
 
     /// Shows the map.
-    pub fn show(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
-        // A click that closes a menu is not meant for the map.
-        let is_popup = egui::Popup::is_any_open(ui.ctx());
-        let is_free = !std::mem::replace(&mut self.had_popup, is_popup) && !is_popup;
-        self.tools(ui, studio, language, actions);
-        // This row is always there, so that the map stays where it is when the tool changes.
-        let (row, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::hover());
-        ui.scope_builder(UiBuilder::new().max_rect(row), |ui| {
-            egui::ScrollArea::horizontal().id_salt("tool").auto_shrink(false).show(ui, |ui| {
-                match (self.tool, &studio.frame) {
-                    (Tool::Brush(effect), Some(frame)) => self.brush.settings(ui, effect, frame, language),
-                    (tool, _) => drop(ui.weak(language.text(tool.help()))),
-                }
-            });
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        studio: &Studio,
+        tools: &mut Tools,
+        language: Language,
+        actions: &mut Vec<Action>,
+    ) {
+        tool_row::show(ui, "map", |ui| {
+            contours(ui, studio, language, actions);
+            ui.separator();
+            self.comparison(ui, studio, language, actions);
         });
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "map view"));
@@ -129,16 +87,8 @@ impl MapPanel {
         let size = [rect.width(), rect.height()];
         let mut view = self.view.unwrap_or_else(|| MapView::fitting(bounds, size));
         let before = view;
-        let is_brush = matches!(self.tool, Tool::Brush(_));
-        // With a brush, the points of a drawing cannot be dragged.
-        if is_brush || !self.handles(ui, rect, studio, &view, actions) {
-            self.navigate(ui, &response, rect, &mut view);
-        }
-        if is_brush {
-            self.brush.paint(ui, &response, (rect, &view), (studio, is_free), actions);
-        }
-        if is_free {
-            self.draw_line(ui, &response, (rect, &view), studio, actions);
+        if !tools.use_on(ui, &response, &projection(rect, before), (studio, language), actions) {
+            navigate(ui, &response, rect, tools, &mut view);
         }
         if view != before {
             self.view = Some(view);
@@ -185,41 +135,7 @@ impl MapPanel {
             frame,
             language,
         );
-        self.draw_drawing(&painter, studio, screen);
-        self.draw_profile(ui, &painter, rect, frame, screen);
-        if is_brush {
-            self.brush.draw(&painter, response.hover_pos(), (rect, &view), studio, language);
-        }
-    }
-
-    /// The choice of the tool, and the comparison.
-    fn tools(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
-        tool_row::show(ui, |ui| {
-            let brushes = Effect::ALL.map(|effect| (Tool::Brush(effect), map_brush::names(effect)[0]));
-            let tools = [
-                (Tool::Pan, "map.pan"),
-                (Tool::Profile, "map.profile"),
-                (Tool::Draw(drawing::OPS[0]), "map.path"),
-                (Tool::Draw(drawing::OPS[1]), "map.polygon"),
-            ];
-            for (tool, name) in tools.into_iter().chain(brushes) {
-                if ui
-                    .selectable_label(self.tool == tool, language.text(name))
-                    .on_hover_text(language.text(tool.help()))
-                    .clicked()
-                {
-                    self.tool = tool;
-                    self.drawn.clear();
-                }
-            }
-            if self.profile.is_some() && ui.button(language.text("map.clear")).clicked() {
-                self.profile = None;
-            }
-            ui.separator();
-            contours(ui, studio, language, actions);
-            ui.separator();
-            self.comparison(ui, studio, language, actions);
-        });
+        tools.draw(ui, &response, &projection(rect, view), (studio, frame), language);
     }
 
     /// Controls for keeping the picture, to compare it with pictures after later changes.
@@ -250,141 +166,6 @@ impl MapPanel {
                 if ui.button(language.text("map.drop")).clicked() {
                     self.kept = None;
                 }
-            }
-        }
-    }
-
-    /// Starts drawing a line or an area.
-    pub fn draw(&mut self, op: &'static str) {
-        self.tool = Tool::Draw(op);
-        self.drawn.clear();
-    }
-
-    /// Selects a brush.
-    pub fn take_brush(&mut self, effect: Effect) {
-        self.tool = Tool::Brush(effect);
-    }
-
-    /// Adds a point with each click; a double click or Enter ends the drawing, Escape discards it.
-    fn draw_line(
-        &mut self,
-        ui: &Ui,
-        response: &egui::Response,
-        (rect, view): (Rect, &MapView),
-        studio: &Studio,
-        actions: &mut Vec<Action>,
-    ) {
-        let Tool::Draw(op) = self.tool else { return };
-        let size = [rect.width(), rect.height()];
-        let ends = response.double_clicked() || ui.input(|input| input.key_pressed(Key::Enter));
-        if response.clicked()
-            && !response.double_clicked()
-            && let Some(pointer) = response.interact_pointer_pos()
-        {
-            let at = pointer - rect.min;
-            self.drawn.push(view.world([at.x, at.y], size).map(f64::round));
-        }
-        if ui.input(|input| input.key_pressed(Key::Escape)) {
-            self.drawn.clear();
-        }
-        let fewest = if op == drawing::OPS[0] { 2 } else { 3 };
-        if ends && self.drawn.len() >= fewest {
-            let taken = studio.document.recipe().nodes().iter().map(|named| named.name.as_str()).collect();
-            let points = drawing::value(&std::mem::take(&mut self.drawn));
-            actions.push(Action::Edit(Edit::Add {
-                name: names::free(&names::of_op(op), &taken),
-                op: op.to_owned(),
-                inputs: Vec::new(),
-                params: vec![(drawing::POINTS.to_owned(), points)],
-                readers: Vec::new(),
-            }));
-            self.tool = Tool::Pan;
-        }
-    }
-
-    /// Handles at the points of the selected drawing. Returns whether one is being dragged.
-    fn handles(&self, ui: &Ui, rect: Rect, studio: &Studio, view: &MapView, actions: &mut Vec<Action>) -> bool {
-        let Some((name, mut points)) = selected(studio) else { return false };
-        let size = [rect.width(), rect.height()];
-        let mut is_moving = false;
-        for k in 0..points.len() {
-            let [x, y] = view.screen(points[k], size);
-            let around = Rect::from_center_size(rect.min + Vec2::new(x, y), Vec2::splat(14.0)).intersect(rect);
-            if !around.is_positive() {
-                continue;
-            }
-            let handle = ui.interact(around, ui.scope_id().with((name, k)), Sense::drag());
-            handle.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, format!("point {k} of {name}")));
-            if handle.dragged()
-                && let Some(pointer) = handle.interact_pointer_pos()
-            {
-                let at = pointer - rect.min;
-                points[k] = view.world([at.x, at.y], size).map(f64::round);
-                actions.push(Action::Edit(Edit::Param {
-                    node: name.to_owned(),
-                    key: drawing::POINTS.to_owned(),
-                    value: drawing::value(&points),
-                }));
-                is_moving = true;
-            }
-            if handle.drag_stopped() {
-                actions.push(Action::EndGesture);
-            }
-        }
-        is_moving
-    }
-
-    /// Draws the current drawing, and the selected one.
-    fn draw_drawing(&self, painter: &egui::Painter, studio: &Studio, screen: impl Fn([f64; 2]) -> egui::Pos2) {
-        let draw = |points: &[[f64; 2]], is_closed: bool| {
-            let mut line: Vec<egui::Pos2> = points.iter().map(|point| screen(*point)).collect();
-            if is_closed && let Some(first) = line.first().copied() {
-                line.push(first);
-            }
-            painter.line(line.clone(), Stroke::new(4.0, Color32::from_black_alpha(150)));
-            painter.line(line.clone(), Stroke::new(2.0, Color32::from_rgb(255, 240, 120)));
-            for point in line {
-                painter.circle(point, 4.5, Color32::WHITE, Stroke::new(1.5, Color32::BLACK));
-            }
-        };
-        if let Tool::Draw(op) = self.tool {
-            draw(&self.drawn, op != drawing::OPS[0] && self.drawn.len() > 2);
-        }
-        if let Some((name, points)) = selected(studio) {
-            let nodes = studio.document.recipe().nodes();
-            let is_area = nodes.iter().any(|named| named.name == name && named.node.spec().op != drawing::OPS[0]);
-            draw(&points, is_area);
-        }
-    }
-
-    fn navigate(&mut self, ui: &Ui, response: &egui::Response, rect: Rect, view: &mut MapView) {
-        let size = [rect.width(), rect.height()];
-        let is_brush = matches!(self.tool, Tool::Brush(_));
-        let is_by_primary = response.dragged_by(PointerButton::Primary);
-        let is_line = self.tool == Tool::Profile && is_by_primary;
-        if response.dragged() && !is_line && !(is_brush && is_by_primary) {
-            let by = response.drag_delta();
-            view.pan([by.x, by.y]);
-        }
-        if is_line && let Some(pointer) = response.interact_pointer_pos() {
-            let at = pointer - rect.min;
-            let here = view.world([at.x, at.y], size);
-            match &mut self.profile {
-                Some([_, end]) if !response.drag_started() => *end = here,
-                profile => *profile = Some([here, here]),
-            }
-        }
-        if response.contains_pointer()
-            && let Some(pointer) = ui.input(|input| input.pointer.hover_pos())
-        {
-            let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-            // Ctrl with the wheel is for the brush.
-            let pinch = if is_brush { 1.0 } else { pinch };
-            if scroll != 0.0 || pinch != 1.0 {
-                // The pointer may be over the other picture.
-                let at = pointer - rect.min;
-                let at = if at.x < 0.0 { at + Vec2::new(rect.width(), 0.0) } else { at };
-                view.zoom(f64::from(pinch * libm::expf(scroll * 0.004)), [at.x, at.y], size);
             }
         }
     }
@@ -422,57 +203,6 @@ impl MapPanel {
         self.texture = Some((texture, key));
         id
     }
-
-    fn draw_profile(
-        &self,
-        ui: &Ui,
-        painter: &egui::Painter,
-        rect: Rect,
-        frame: &Frame,
-        screen: impl Fn([f64; 2]) -> egui::Pos2,
-    ) {
-        let Some([from, to]) = self.profile else { return };
-        painter.line_segment([screen(from), screen(to)], Stroke::new(3.0, Color32::from_black_alpha(160)));
-        painter.line_segment([screen(from), screen(to)], Stroke::new(1.5, Color32::from_rgb(255, 214, 90)));
-        let steps = 200;
-        let values: Vec<Option<f32>> = (0..=steps)
-            .map(|k| {
-                let share = f64::from(k) / f64::from(steps);
-                frame.at([0, 1].map(|c| from[c] + (to[c] - from[c]) * share)).map(|[value, _]| value)
-            })
-            .collect();
-        let finite: Vec<f32> = values.iter().flatten().copied().filter(|value| value.is_finite()).collect();
-        let low = finite.iter().copied().fold(f32::INFINITY, f32::min);
-        let high = finite.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-        if finite.len() < 2 {
-            return;
-        }
-        let size = Vec2::new((rect.width() - 24.0).clamp(60.0, 420.0), 96.0);
-        let chart = Rect::from_min_size(rect.right_bottom() - size - Vec2::splat(12.0), size);
-        painter.rect_filled(chart, 4.0, ui.visuals().window_fill.gamma_multiply(0.92));
-        let inner = chart.shrink2(Vec2::new(8.0, 16.0));
-        let points: Vec<egui::Pos2> = values
-            .iter()
-            .enumerate()
-            .filter_map(|(k, value)| {
-                let share = ((*value)? - low) / (high - low).max(1e-6);
-                Some(pos2(
-                    inner.left() + inner.width() * k as f32 / steps as f32,
-                    inner.bottom() - inner.height() * share,
-                ))
-            })
-            .collect();
-        painter.line(points, Stroke::new(1.5, ui.visuals().selection.bg_fill));
-        let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
-        let text = format!("{low:.1} – {high:.1} {}, {length:.0} m", frame.unit);
-        painter.text(
-            chart.left_top() + Vec2::new(8.0, 2.0),
-            Align2::LEFT_TOP,
-            text,
-            FontId::proportional(11.0),
-            ui.visuals().text_color(),
-        );
-    }
 }
 
 /// The picture of a frame. Large frames are reduced to every second, third, ... sample.
@@ -498,11 +228,34 @@ fn sides(frame: &Frame) -> [f64; 4] {
     [window.x, window.y, window.right(), window.bottom()].map(|side| (side as f64 - 0.5) * window.cell)
 }
 
-/// The selected drawing: the name of its node, and its points.
-fn selected(studio: &Studio) -> Option<(&str, Vec<[f64; 2]>)> {
-    let name = studio.selected.first()?;
-    let named = studio.document.recipe().nodes().iter().find(|named| named.name == *name)?;
-    Some((&named.name, drawing::points_of(&named.node)?))
+/// Where the map shows positions of the world.
+fn projection<'a>(rect: Rect, view: MapView) -> Projection<'a> {
+    let size: [f32; 2] = rect.size().into();
+    let world = move |at: Pos2| Some(view.world((at - rect.min).into(), size));
+    Projection::new(rect, world, move |at| Some(rect.min + Vec2::from(view.screen(at, size))))
+}
+
+/// Moves the map by drags and the wheel.
+fn navigate(ui: &Ui, response: &Response, rect: Rect, tools: &Tools, view: &mut MapView) {
+    let size = [rect.width(), rect.height()];
+    let buttons = [PointerButton::Primary, PointerButton::Secondary, PointerButton::Middle];
+    if buttons.into_iter().any(|button| response.dragged_by(button) && !tools.takes_drags(button)) {
+        let by = response.drag_delta();
+        view.pan([by.x, by.y]);
+    }
+    if response.contains_pointer()
+        && let Some(pointer) = ui.input(|input| input.pointer.hover_pos())
+    {
+        let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+        // Ctrl with the wheel is for the brush.
+        let pinch = if tools.is_brush() { 1.0 } else { pinch };
+        if scroll != 0.0 || pinch != 1.0 {
+            // The pointer may be over the other picture.
+            let at = pointer - rect.min;
+            let at = if at.x < 0.0 { at + Vec2::new(rect.width(), 0.0) } else { at };
+            view.zoom(f64::from(pinch * libm::expf(scroll * 0.004)), [at.x, at.y], size);
+        }
+    }
 }
 
 /// A bar of a round length.

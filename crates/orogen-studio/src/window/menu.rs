@@ -8,6 +8,7 @@ use super::command::{self, Command, Menu};
 use super::swatches;
 use crate::catalogue::Language;
 use crate::preview::coloring::Coloring;
+use crate::settings::layout::View;
 use crate::settings::{Settings, Theme};
 use crate::studio::Studio;
 
@@ -73,11 +74,16 @@ fn label(command: Command, studio: Option<&Studio>, language: Language) -> Strin
 
 /// Whether the state that a command switches is on.
 fn is_marked(command: Command, settings: &Settings) -> bool {
+    let layout = &settings.layout;
     match command {
-        Command::PanelBelow => settings.has_below,
-        Command::Inspector => settings.has_inspector,
-        Command::ViewAlone => !settings.has_below && !settings.has_inspector,
+        Command::PanelBelow => layout.has_below,
+        Command::Inspector => layout.has_inspector,
+        Command::ViewAlone => layout.is_view_alone(),
         Command::Thumbnails => settings.thumbnails,
+        Command::ShowRelief => layout.view == View::Relief,
+        Command::ShowMap => layout.view == View::Map,
+        Command::ShowBoth => layout.view == View::Both,
+        Command::ShowWindows => layout.view == View::Windows,
         _ => false,
     }
 }

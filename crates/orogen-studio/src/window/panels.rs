@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, CentralPanel, Panel, RichText, Ui};
+use eframe::egui::{self, CentralPanel, Panel, RichText, Ui, ViewportBuilder, ViewportClass, ViewportId};
 use orogen::gpu::Gpu;
 
 use super::action::Action;
@@ -14,47 +14,23 @@ use super::relief::Ability;
 use super::relief_panel::ReliefPanel;
 use super::start_page::StartPage;
 use super::text_panel::TextPanel;
+use super::tools::Tools;
 use super::variants_panel::VariantsPanel;
-use super::{analysis_panel, status};
+use super::{analysis_panel, status, tool_row};
 use crate::catalogue::Language;
 use crate::preview::worker::Wake;
 use crate::settings::Settings;
+use crate::settings::layout::{Below, Layout, View};
 use crate::studio::Studio;
 
-/// The main view.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum View {
-    /// The land in 3D.
-    Relief,
-    /// The land from above.
-    Map,
-}
-
-/// The panel below the view.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Below {
-    /// The graph of nodes.
-    Graph,
-    /// The text of the recipe.
-    Text,
-    /// Measurements.
-    Analysis,
-    /// Measurements compared with real land.
-    Real,
-    /// Pictures with other seeds and values.
-    Variants,
-}
-
-/// The panels, and which of them are shown.
+/// The panels.
 pub struct Panels {
-    /// The main view.
-    pub view: View,
-    /// The panel below the view.
-    pub below: Below,
     /// The land in 3D.
     pub relief: ReliefPanel,
     /// The land from above.
-    pub map: MapPanel,
+    map: MapPanel,
+    /// The tools for the land.
+    pub tools: Tools,
     /// The graph of nodes.
     pub graph: Graph,
     /// The text of the recipe.
@@ -83,15 +59,21 @@ pub struct Shown<'a> {
 /// The least height of the view with its tools.
 const VIEW: f32 = 160.0;
 
+/// The least width of a view beside another one.
+const BESIDE: f32 = 160.0;
+
+/// Initial and minimum size of a window with the map.
+const APART: [f32; 2] = [900.0, 700.0];
+const LEAST: [f32; 2] = [320.0, 240.0];
+
 impl Panels {
-    /// The panels with the 3D view above the graph.
+    /// The panels of a window.
     #[must_use]
     pub fn new(wake: &Wake) -> Panels {
         Panels {
-            view: View::Relief,
-            below: Below::Graph,
             relief: ReliefPanel::default(),
             map: MapPanel::default(),
+            tools: Tools::default(),
             graph: Graph::default(),
             text: TextPanel::default(),
             inspector: Inspector::default(),
@@ -105,6 +87,7 @@ impl Panels {
     pub fn reset(&mut self) {
         self.inspector = Inspector::default();
         (self.graph, self.text, self.map) = (Graph::default(), TextPanel::default(), MapPanel::default());
+        self.tools = Tools::default();
         self.relief.reset();
     }
 
@@ -117,43 +100,99 @@ impl Panels {
 
     /// Shows the panels, or the start page.
     pub fn show(&mut self, ui: &mut Ui, shown: &Shown, actions: &mut Vec<Action>) {
-        let Shown { settings, gpu, ability, language, .. } = *shown;
+        let Shown { settings, gpu, language, .. } = *shown;
         let Some(studio) = shown.studio else {
             CentralPanel::default().show(ui, |ui| self.start.show(ui, settings, language, actions));
             return;
         };
+        let mut layout = settings.layout;
         Panel::bottom("status").show(ui, |ui| status::show(ui, studio, gpu, language));
-        if settings.has_inspector {
+        if layout.has_inspector {
             let most = (ui.available_width() * 0.6).clamp(220.0, 520.0);
-            Panel::right("inspector").default_size(300.0).size_range(220.0..=most).show(ui, |ui| {
+            let panel = Panel::right("inspector").default_size(layout.width.unwrap_or(300.0)).size_range(220.0..=most);
+            let inspector = panel.show(ui, |ui| {
                 egui::ScrollArea::vertical()
                     .auto_shrink(false)
                     .show(ui, |ui| self.inspector.show(ui, studio, language, actions));
             });
+            layout.width = Some(inspector.response.rect.width());
         }
-        if settings.has_below {
-            self.show_below(ui, studio, language, actions);
+        if layout.has_below {
+            self.show_below(ui, studio, &mut layout, language, actions);
         }
-        CentralPanel::default().show(ui, |ui| {
-            ui.horizontal(|ui| {
-                for (view, name) in [(View::Relief, "view.relief"), (View::Map, "view.map")] {
-                    if ui.selectable_label(self.view == view, language.text(name)).clicked() {
-                        self.view = view;
-                    }
-                }
-            });
-            match self.view {
-                View::Relief => self.relief.show(ui, studio, ability, language, actions),
-                View::Map => self.map.show(ui, studio, language, actions),
-            }
-        });
+        CentralPanel::default().show(ui, |ui| self.show_views(ui, (studio, shown), &mut layout, actions));
+        if layout != settings.layout {
+            actions.push(Action::Layout(layout));
+        }
     }
 
-    fn show_below(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+    fn show_views(
+        &mut self,
+        ui: &mut Ui,
+        (studio, shown): (&Studio, &Shown),
+        layout: &mut Layout,
+        actions: &mut Vec<Action>,
+    ) {
+        let Shown { ability, language, .. } = *shown;
+        self.tools.begin(ui.ctx());
+        tool_row::show(ui, "land", |ui| {
+            for view in View::ALL {
+                if ui.selectable_label(layout.view == view, language.text(view.name())).clicked() {
+                    layout.view = view;
+                }
+            }
+            ui.separator();
+            self.tools.choice(ui, language);
+        });
+        self.tools.settings(ui, studio, language);
+        if layout.view == View::Both {
+            let width = ui.available_width();
+            let panel = Panel::left("relief").resizable(true).default_size(layout.beside.unwrap_or(width / 2.0));
+            let relief = panel.size_range(BESIDE..=(width - BESIDE).max(BESIDE)).show(ui, |ui| {
+                self.relief.show(ui, studio, &mut self.tools, (ability, language), actions);
+            });
+            layout.beside = Some(relief.response.rect.width());
+            CentralPanel::default().show(ui, |ui| self.map.show(ui, studio, &mut self.tools, language, actions));
+            return;
+        }
+        if layout.view == View::Map {
+            self.map.show(ui, studio, &mut self.tools, language, actions);
+        } else {
+            self.relief.show(ui, studio, &mut self.tools, (ability, language), actions);
+        }
+        if layout.view == View::Windows && self.show_window(ui, studio, language, actions) {
+            layout.view = View::Relief;
+        }
+    }
+
+    /// Shows the map in a window of its own. Returns whether it was closed.
+    fn show_window(&mut self, ui: &Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) -> bool {
+        let title = format!("{} – {}", studio.document.title(), language.text("view.map"));
+        let builder = ViewportBuilder::default().with_title(title).with_inner_size(APART).with_min_inner_size(LEAST);
+        ui.ctx().show_viewport_immediate(ViewportId::from_hash_of("map"), builder, |ui, class| {
+            if class == ViewportClass::EmbeddedWindow {
+                // Systems without more windows show it within this one.
+                ui.set_min_size(LEAST.into());
+            }
+            CentralPanel::default().show(ui, |ui| self.map.show(ui, studio, &mut self.tools, language, actions));
+            ui.input(|input| input.viewport().close_requested())
+        })
+    }
+
+    fn show_below(
+        &mut self,
+        ui: &mut Ui,
+        studio: &Studio,
+        layout: &mut Layout,
+        language: Language,
+        actions: &mut Vec<Action>,
+    ) {
         let available = ui.available_height();
         // The view keeps some room.
         let most = (available * 0.8).min(available - VIEW).max(60.0);
-        Panel::bottom("below").resizable(true).default_size(available * 0.36).size_range(60.0..=most).show(ui, |ui| {
+        let height = layout.height.unwrap_or(available * 0.36);
+        let panel = Panel::bottom("below").resizable(true).default_size(height).size_range(60.0..=most);
+        let below = panel.show(ui, |ui| {
             ui.horizontal(|ui| {
                 for (below, name) in [
                     (Below::Graph, "below.graph"),
@@ -162,20 +201,21 @@ impl Panels {
                     (Below::Real, "below.real"),
                     (Below::Variants, "below.variants"),
                 ] {
+                    let is_shown = layout.below == below;
                     let label = match below == Below::Text && !studio.document.is_valid() {
                         // Red on the color of the selection would not be readable.
-                        true if self.below == below => RichText::new(format!("! {}", language.text(name))),
+                        true if is_shown => RichText::new(format!("! {}", language.text(name))),
                         true => RichText::new(format!("! {}", language.text(name))).color(ui.visuals().error_fg_color),
                         false => RichText::new(language.text(name)),
                     };
-                    if ui.selectable_label(self.below == below, label).clicked() {
-                        self.below = below;
+                    if ui.selectable_label(is_shown, label).clicked() {
+                        layout.below = below;
                     }
                 }
             });
             // A panel with little content keeps its size.
             ui.set_min_size(ui.available_size());
-            match self.below {
+            match layout.below {
                 Below::Graph => self.graph.show(ui, studio, language, actions),
                 Below::Text => self.text.show(ui, studio, language, actions),
                 Below::Analysis => analysis_panel::show(ui, studio, language),
@@ -183,5 +223,6 @@ impl Panels {
                 Below::Variants => self.variants.show(ui, studio, language, actions),
             }
         });
+        layout.height = Some(below.response.rect.height());
     }
 }

@@ -4,17 +4,18 @@ use std::sync::Arc;
 
 use eframe::egui::{self, FontId, Key, PointerButton, Rect, Sense, Slider, Ui};
 use eframe::egui_wgpu::Callback;
-use glam::Vec3;
 
 use super::action::Action;
 use super::light::{Block, Light};
 use super::relief::{Ability, Drawing, Scene};
+use super::tools::{Projection, Tools};
 use super::{legend, tool_row};
 use crate::catalogue::Language;
 use crate::preview::contours::suiting;
 use crate::preview::frame::{Frame, Quality};
 use crate::studio::Studio;
 use crate::view::camera::{Camera, Side};
+use crate::view::land::Land;
 
 /// State of the view.
 #[derive(Debug)]
@@ -72,8 +73,8 @@ impl ReliefPanel {
         &mut self,
         ui: &mut Ui,
         studio: &Studio,
-        ability: Option<Ability>,
-        language: Language,
+        tools: &mut Tools,
+        (ability, language): (Option<Ability>, Language),
         actions: &mut Vec<Action>,
     ) {
         self.controls(ui, studio, language, actions);
@@ -84,7 +85,13 @@ impl ReliefPanel {
             say(ui, rect, language.text("relief.no_graphics"));
             return;
         };
-        self.navigate(ui, &response, rect);
+        let is_dragging = studio.frame.as_ref().is_some_and(|frame| {
+            let land = self.land(frame);
+            tools.use_on(ui, &response, &self.projection(&land, rect), (studio, language), actions)
+        });
+        if !is_dragging {
+            self.navigate(ui, &response, rect, tools);
+        }
         let Some(frame) = &studio.frame else {
             painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
             // The line at the bottom of the window says more about failures.
@@ -114,22 +121,24 @@ impl ReliefPanel {
             // The full picture is drawn once the movement stops.
             ui.ctx().request_repaint();
         }
-        if response.double_clicked()
-            && let Some(pointer) = response.interact_pointer_pos()
-            && let Some(place) = self.hit(frame, pointer, rect)
-        {
-            self.camera.target = place;
-        }
-        if let Some(pointer) = response.hover_pos()
-            && let Some(place) = self.hit(frame, pointer, rect)
-        {
-            let text = readout(frame, self.world(frame, place), language);
+        let land = self.land(frame);
+        tools.draw(ui, &response, &self.projection(&land, rect), (studio, frame), language);
+        let aspect = rect.width() / rect.height().max(1.0);
+        let place_at = |at: egui::Pos2| land.hit(&self.camera, share(at, rect), aspect);
+        let hovered = response.hover_pos().and_then(place_at);
+        let aimed = response.interact_pointer_pos().filter(|_| response.double_clicked() && tools.moves());
+        let aimed = aimed.and_then(place_at);
+        if let Some(place) = hovered {
+            let text = readout(frame, land.world(place), language);
             let galley = painter.layout_no_wrap(text, FontId::monospace(11.0), egui::Color32::WHITE);
             let at = rect.left_bottom() + egui::vec2(12.0, -12.0 - galley.size().y);
             // On light ground, light text would not be readable.
             let behind = Rect::from_min_size(at, galley.size()).expand(4.0);
             painter.rect_filled(behind, 3.0, egui::Color32::from_black_alpha(150));
             painter.galley(at, galley, egui::Color32::WHITE);
+        }
+        if let Some(place) = aimed {
+            self.camera.target = place;
         }
     }
 
@@ -167,7 +176,7 @@ impl ReliefPanel {
     }
 
     fn controls(&mut self, ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
-        tool_row::show(ui, |ui| {
+        tool_row::show(ui, "relief", |ui| {
             let mut sun = self.sun.unwrap_or(studio.look.sun);
             ui.label(language.text("relief.sun"));
             let azimuth = ui
@@ -244,17 +253,23 @@ impl ReliefPanel {
         });
     }
 
-    fn navigate(&mut self, ui: &Ui, response: &egui::Response, rect: Rect) {
+    fn navigate(&mut self, ui: &Ui, response: &egui::Response, rect: Rect, tools: &Tools) {
         let height = rect.height().max(1.0);
         let drag = response.drag_delta() / height;
         let shift = ui.input(|input| input.modifiers.shift);
-        if response.dragged_by(PointerButton::Primary) && !shift {
+        let is_taken = tools.takes_drags(PointerButton::Primary);
+        // A tool that uses the first button leaves the second one to turn the land.
+        let turning = if is_taken { PointerButton::Secondary } else { PointerButton::Primary };
+        let is_tool = is_taken && response.dragged_by(PointerButton::Primary);
+        if response.dragged_by(turning) && !shift {
             self.camera.orbit([drag.x, drag.y]);
-        } else if response.dragged() {
+        } else if response.dragged() && !is_tool {
             self.camera.pan([drag.x, drag.y]);
         }
         if response.contains_pointer() {
             let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            // Ctrl with the wheel is for the brush.
+            let pinch = if tools.is_brush() { 1.0 } else { pinch };
             if scroll != 0.0 || pinch != 1.0 {
                 self.camera.zoom(pinch * libm::expf(scroll * 0.004));
             }
@@ -284,12 +299,6 @@ impl ReliefPanel {
         self.exaggeration.or(frame.map(suiting_times)).unwrap_or(1.0)
     }
 
-    /// Metres per unit of the view.
-    fn unit(frame: &Frame) -> f32 {
-        let window = frame.window();
-        (window.width.max(window.height) as f64 * window.cell / 2.0) as f32
-    }
-
     /// The lowest and highest height, and the height at the center of the view.
     fn levels(frame: &Frame) -> [f32; 3] {
         let finite = frame.heights.data().iter().copied().filter(|height| height.is_finite());
@@ -302,7 +311,7 @@ impl ReliefPanel {
     fn block(&self, frame: &Frame) -> Block {
         let window = frame.window();
         let [width, height] = [window.width, window.height].map(|samples| (samples.max(2) - 1) as f64 * window.cell);
-        let ([low, high, _], unit) = (Self::levels(frame), f64::from(Self::unit(frame)));
+        let ([low, high, _], unit) = (Self::levels(frame), Land::unit(frame));
         Block {
             across: (width * width + height * height).sqrt() / unit,
             highest: f64::from(high - low) * self.times(Some(frame)) / unit,
@@ -312,7 +321,7 @@ impl ReliefPanel {
 
     fn scene(&self, frame: &Frame, studio: &Studio, aspect: f32) -> Scene {
         let window = frame.window();
-        let unit = Self::unit(frame);
+        let unit = Land::unit(frame) as f32;
         let [low, high, middle] = Self::levels(frame);
         let up = self.times(Some(frame)) as f32 / unit;
         let half = |samples: usize| (samples.max(2) - 1) as f32 * window.cell as f32 / 2.0 / unit;
@@ -334,46 +343,29 @@ impl ReliefPanel {
         }
     }
 
-    /// The point where the ray through a position of the view meets the land.
-    fn hit(&self, frame: &Frame, pointer: egui::Pos2, rect: Rect) -> Option<Vec3> {
-        let at = [(pointer.x - rect.left()) / rect.width(), (pointer.y - rect.top()) / rect.height()];
-        let [start, ray] = self.camera.ray(at, rect.width() / rect.height().max(1.0));
+    /// The land as it stands in the view.
+    fn land<'a>(&self, frame: &'a Frame) -> Land<'a> {
         let [_, _, middle] = Self::levels(frame);
-        let up = self.times(Some(frame)) as f32 / Self::unit(frame);
-        let below = |place: Vec3| {
-            let [_, height] = frame.at(self.world(frame, place))?;
-            Some(place.y <= (height - middle) * up)
-        };
-        // Steps are finer than the lattice near the camera, which is enough for a pointer.
-        let (mut far, step) = (0.0, self.camera.distance / 160.0);
-        for _ in 0..640 {
-            let place = start + ray * far;
-            if below(place) == Some(true) {
-                let (mut near, mut behind) = (far - step, far);
-                for _ in 0..12 {
-                    let middle = (near + behind) / 2.0;
-                    match below(start + ray * middle) {
-                        Some(true) => behind = middle,
-                        _ => near = middle,
-                    }
-                }
-                return Some(start + ray * behind);
-            }
-            far += step;
-        }
-        None
+        Land::new(frame, self.times(Some(frame)), middle)
     }
 
-    /// The world position of a point in the view.
-    fn world(&self, frame: &Frame, place: Vec3) -> [f64; 2] {
-        let window = frame.window();
-        let unit = f64::from(Self::unit(frame));
-        let middle = |first: i64, samples: usize| (first as f64 + (samples.max(2) - 1) as f64 / 2.0) * window.cell;
-        [
-            middle(window.x, window.width) + f64::from(place.x) * unit,
-            middle(window.y, window.height) + f64::from(place.z) * unit,
-        ]
+    /// Where the view shows positions of the world.
+    fn projection<'a>(&self, land: &'a Land<'a>, rect: Rect) -> Projection<'a> {
+        let (camera, aspect) = (self.camera, rect.width() / rect.height().max(1.0));
+        let matrix = camera.matrix(aspect);
+        let world = move |at: egui::Pos2| land.hit(&camera, share(at, rect), aspect).map(|place| land.world(place));
+        Projection::new(rect, world, move |at| {
+            let clip = matrix * land.place(at)?.extend(1.0);
+            let [x, y] = [clip.x, clip.y].map(|part| part / clip.w);
+            let place = rect.center() + egui::vec2(x * rect.width(), -y * rect.height()) / 2.0;
+            (clip.w > 0.0).then_some(place)
+        })
     }
+}
+
+/// A position in the view, from 0, 0 to 1, 1.
+fn share(at: egui::Pos2, rect: Rect) -> [f32; 2] {
+    [(at.x - rect.left()) / rect.width(), (at.y - rect.top()) / rect.height()]
 }
 
 /// The largest vertical exaggeration that is chosen for a land.
@@ -383,7 +375,7 @@ const MAX_TIMES: f64 = 10.0;
 /// about a seventh of the width.
 fn suiting_times(frame: &Frame) -> f64 {
     let [low, high, _] = ReliefPanel::levels(frame);
-    let times = f64::from(0.3 * ReliefPanel::unit(frame) / (high - low).max(1e-3));
+    let times = f64::from(0.3 * Land::unit(frame) as f32 / (high - low).max(1e-3));
     times.floor().clamp(1.0, MAX_TIMES)
 }
 

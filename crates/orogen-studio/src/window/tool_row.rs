@@ -5,10 +5,10 @@ use eframe::egui::{ScrollArea, Ui};
 /// The height below which tools have one row, which can be scrolled.
 const LOW: f32 = 200.0;
 
-/// Shows the tools of a view in rows.
-pub fn show(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+/// Shows tools in rows; each of a panel's rows has another name.
+pub fn show(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
     if ui.available_height() < LOW {
-        ScrollArea::horizontal().id_salt("tools").show(ui, |ui| ui.horizontal(add));
+        ScrollArea::horizontal().id_salt(name).show(ui, |ui| ui.horizontal(add));
     } else {
         ui.horizontal_wrapped(add);
     }

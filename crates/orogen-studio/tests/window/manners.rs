@@ -251,7 +251,7 @@ fn panels_are_hidden_and_a_small_window_shows_the_land() {
     press(&mut harness, Modifiers::NONE, Key::F7);
     assert!(view(&harness).width() > before.width() + 150.0 && harness.query_by_label("Next seed").is_none());
     let settings = Settings::read(Some(&folder));
-    assert!(!settings.has_below && !settings.has_inspector, "it is remembered");
+    assert!(settings.layout.is_view_alone(), "it is remembered");
     // What needs a panel shows it again.
     press(&mut harness, Modifiers::COMMAND, Key::Num3);
     assert!(harness.query_by_label("Tidy").is_some());

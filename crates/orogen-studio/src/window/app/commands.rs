@@ -8,11 +8,11 @@ use super::{App, Pending};
 use crate::editing::edit::Edit;
 use crate::editing::groups;
 use crate::files;
+use crate::settings::layout::{Below, View};
 use crate::window::command::Command;
 use crate::window::dialogs::{CommandPalette, FileDialog};
 use crate::window::export_dialog::ExportDialog;
 use crate::window::menu;
-use crate::window::panels::{Below, View};
 use crate::window::purpose::Purpose;
 use crate::window::tour::Tour;
 
@@ -37,8 +37,10 @@ impl App {
                 let text = self.language.fill("about.text", &[("version", env!("CARGO_PKG_VERSION"))]);
                 self.dialogs.message = Some((self.text("command.about").into(), text));
             }
-            Command::ShowRelief => self.panels.view = View::Relief,
-            Command::ShowMap => self.panels.view = View::Map,
+            Command::ShowRelief => self.show_view(View::Relief),
+            Command::ShowMap => self.show_view(View::Map),
+            Command::ShowBoth => self.show_view(View::Both),
+            Command::ShowWindows => self.show_view(View::Windows),
             Command::ShowGraph => self.show_below(Below::Graph),
             Command::ShowText => self.show_below(Below::Text),
             Command::ShowAnalysis => self.show_below(Below::Analysis),
@@ -48,16 +50,17 @@ impl App {
                 self.panels.show_whole();
             }
             Command::PanelBelow => {
-                self.settings.has_below = !self.settings.has_below;
+                self.settings.layout.has_below = !self.settings.layout.has_below;
                 self.remember();
             }
             Command::Inspector => {
-                self.settings.has_inspector = !self.settings.has_inspector;
+                self.settings.layout.has_inspector = !self.settings.layout.has_inspector;
                 self.remember();
             }
             Command::ViewAlone => {
-                let is_alone = !self.settings.has_below && !self.settings.has_inspector;
-                (self.settings.has_below, self.settings.has_inspector) = (is_alone, is_alone);
+                let layout = &mut self.settings.layout;
+                let is_alone = layout.is_view_alone();
+                (layout.has_below, layout.has_inspector) = (is_alone, is_alone);
                 self.remember();
             }
             Command::Thumbnails => {
@@ -102,7 +105,7 @@ impl App {
             Command::Rename => {
                 let group = groups::of_selection(studio.document.recipe(), &selected);
                 if let Some(name) = group.as_ref().or(selected.first()) {
-                    self.settings.has_inspector = true;
+                    self.settings.layout.has_inspector = true;
                     self.panels.inspector.rename(name);
                 }
             }
@@ -126,8 +129,20 @@ impl App {
 
     /// Shows a panel below the view.
     pub(super) fn show_below(&mut self, below: Below) {
-        self.panels.below = below;
-        self.settings.has_below = true;
+        (self.settings.layout.below, self.settings.layout.has_below) = (below, true);
+    }
+
+    /// Shows the land in 3D, from above, or both.
+    pub(super) fn show_view(&mut self, view: View) {
+        self.settings.layout.view = view;
+        self.remember();
+    }
+
+    /// Shows the map, if it is not shown.
+    pub(super) fn show_map(&mut self) {
+        if !self.settings.layout.view.has_map() {
+            self.show_view(View::Map);
+        }
     }
 
     pub(super) fn save_as(&mut self) {

@@ -1,40 +1,43 @@
-//! The brush on the map: its settings, the ring at the pointer, and the stroke while the button is pressed.
+//! The brush: its settings, the ring at the pointer, and the stroke while the button is pressed.
 
-use eframe::egui::{self, Align2, Color32, CursorIcon, Event, Key, Pos2, Rect, Response, Stroke, Ui, Vec2};
+use eframe::egui::{self, Align2, Color32, CursorIcon, Event, Id, Key, Pos2, Response, Stroke, Ui, Vec2};
 
-use super::action::Action;
-use super::fields::{self, Number};
-use super::label::label;
+use super::Projection;
 use crate::catalogue::Language;
 use crate::editing::brush::{Brush, Effect, Painting, RADII};
 use crate::preview::frame::Frame;
 use crate::studio::{self, Studio};
-use crate::view::map_view::MapView;
+use crate::window::action::Action;
+use crate::window::fields::{self, Number};
+use crate::window::label::label;
 
 /// State of the brush.
 #[derive(Default)]
-pub struct MapBrush {
+pub struct BrushTool {
     /// The settings; `None` until it is used.
     brush: Option<Brush>,
-    /// The stroke that is being painted.
-    painting: Option<Painting>,
+    /// The stroke that is being painted, and the view in which it is.
+    painting: Option<(Painting, Id)>,
 }
 
 /// The names of an effect and of its help, as keys of the catalog.
 #[must_use]
 pub fn names(effect: Effect) -> [&'static str; 2] {
     match effect {
-        Effect::Paint => ["map.paint", "map.paint_help"],
-        Effect::Erase => ["map.erase", "map.erase_help"],
-        Effect::Raise => ["map.raise", "map.height_help"],
-        Effect::Lower => ["map.lower", "map.height_help"],
+        Effect::Paint => ["tool.paint", "tool.paint_help"],
+        Effect::Erase => ["tool.erase", "tool.erase_help"],
+        Effect::Raise => ["tool.raise", "tool.height_help"],
+        Effect::Lower => ["tool.lower", "tool.height_help"],
     }
 }
 
 /// The factor by which a key press changes the radius.
 const STEP: f64 = 1.2;
 
-impl MapBrush {
+/// Number of sides of a ring.
+const RING: u32 = 64;
+
+impl BrushTool {
     /// The brush with an effect. A new brush suits the picture.
     fn with(&mut self, effect: Effect, frame: &Frame) -> &mut Brush {
         let brush = self.brush.get_or_insert_with(|| {
@@ -59,11 +62,11 @@ impl MapBrush {
             }
         };
         ui.horizontal(|ui| {
-            set(ui, "map.radius", &mut brush.radius, &length);
-            set(ui, "map.hardness", &mut brush.hardness, &share);
+            set(ui, "tool.radius", &mut brush.radius, &length);
+            set(ui, "tool.hardness", &mut brush.hardness, &share);
             match effect.is_of_heights() {
-                true => set(ui, "map.height", &mut brush.height, &Number { range: [0.0, 1e6], ..length }),
-                false => set(ui, "map.strength", &mut brush.strength, &share),
+                true => set(ui, "tool.height", &mut brush.height, &Number { range: [0.0, 1e6], ..length }),
+                false => set(ui, "tool.strength", &mut brush.strength, &share),
             }
         });
     }
@@ -74,7 +77,7 @@ impl MapBrush {
         &mut self,
         ui: &Ui,
         response: &Response,
-        (rect, view): (Rect, &MapView),
+        projection: &Projection,
         (studio, is_free): (&Studio, bool),
         actions: &mut Vec<Action>,
     ) {
@@ -90,24 +93,24 @@ impl MapBrush {
             }
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
         }
-        let world = |at: Pos2| view.world((at - rect.min).into(), rect.size().into());
         let is_down = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_down());
         let begins = is_down && ui.input(|input| input.pointer.primary_pressed());
         match &mut self.painting {
             // A press and its release may occur in one frame.
             None if is_free && (begins || response.clicked()) => {
                 let at = ui.input(|input| input.pointer.press_origin()).or(response.interact_pointer_pos());
-                let Some(painting) = at.and_then(|at| begin(*brush, studio, world(at))) else { return };
+                let at = at.and_then(|at| projection.world(at));
+                let Some(painting) = at.and_then(|at| begin(*brush, studio, at)) else { return };
                 actions.push(Action::Edit(painting.edit()));
                 match is_down && studio.document.is_valid() {
-                    true => self.painting = Some(painting),
+                    true => self.painting = Some((painting, response.id)),
                     false => actions.push(Action::EndGesture),
                 }
             }
-            Some(painting) => {
+            Some((painting, view)) if *view == response.id => {
                 let moves = ui.input(|input| {
                     let moved = input.events.iter().filter_map(|event| match event {
-                        Event::PointerMoved(at) => Some(world(*at)),
+                        Event::PointerMoved(at) => projection.world(*at),
                         _ => None,
                     });
                     moved.collect::<Vec<[f64; 2]>>()
@@ -121,7 +124,7 @@ impl MapBrush {
                     actions.push(Action::EndGesture);
                 }
             }
-            None => {}
+            _ => {}
         }
     }
 
@@ -130,25 +133,29 @@ impl MapBrush {
         &self,
         painter: &egui::Painter,
         pointer: Option<Pos2>,
-        (rect, view): (Rect, &MapView),
+        projection: &Projection,
         studio: &Studio,
         language: Language,
     ) {
         let Some(brush) = &self.brush else { return };
-        if let Some(painting) = &self.painting {
-            let screen = |at: &[f64; 2]| rect.min + Vec2::from(view.screen(*at, rect.size().into()));
-            let line: Vec<Pos2> = painting.line().iter().map(screen).collect();
-            painter.line(line, Stroke::new(1.5, Color32::from_white_alpha(120)));
+        if let Some((painting, _)) = &self.painting {
+            for part in projection.line(painting.line()) {
+                painter.line(part, Stroke::new(1.5, Color32::from_white_alpha(120)));
+            }
         }
-        let Some(at) = pointer else { return };
-        let radius = (brush.radius / view.scale) as f32;
-        for (radius, width) in [(radius, 1.5), (radius * brush.hardness as f32, 1.0)] {
-            painter.circle_stroke(at, radius, Stroke::new(width + 1.5, Color32::from_black_alpha(130)));
-            painter.circle_stroke(at, radius, Stroke::new(width, Color32::WHITE));
+        let Some((at, world)) = pointer.and_then(|at| Some((at, projection.world(at)?))) else { return };
+        for (radius, width) in [(brush.radius, 1.5), (brush.radius * brush.hardness, 1.0)] {
+            let ring: Vec<[f64; 2]> = (0..=RING)
+                .map(|k| libm::sincos(std::f64::consts::TAU * f64::from(k) / f64::from(RING)))
+                .map(|(sin, cos)| [world[0] + radius * cos, world[1] + radius * sin])
+                .collect();
+            for part in projection.line(&ring) {
+                painter.line(part.clone(), Stroke::new(width + 1.5, Color32::from_black_alpha(130)));
+                painter.line(part, Stroke::new(width, Color32::WHITE));
+            }
         }
-        let world = view.world((at - rect.min).into(), rect.size().into());
         if self.painting.is_none() && begin(*brush, studio, world).is_none() {
-            label(painter, at + Vec2::new(0.0, 24.0), Align2::CENTER_TOP, language.text("map.nothing"));
+            label(painter, at + Vec2::new(0.0, 24.0), Align2::CENTER_TOP, language.text("tool.nothing"));
         }
     }
 }
