@@ -244,7 +244,7 @@ pub fn resolve(tree: &mut Spanned<Value>, text: &Text, set: &[(String, f64)]) ->
         let mut resolver = Resolver { text, resolved: &mut resolved, silent, path: Vec::new() };
         for (key, value) in top
             .iter_mut()
-            .filter(|(key, _)| !matches!(key.value.as_str(), "parameters" | "about" | "orogen" | "$schema"))
+            .filter(|(key, _)| !matches!(key.value.as_str(), "parameters" | "about" | "orogen" | "studio" | "$schema"))
         {
             resolver.under(Step::Key(key.value.clone()), value);
         }

@@ -149,6 +149,12 @@ impl Walk<'_> {
             self.repeated(&mut seen, key);
             match key.value.as_str() {
                 "orogen" | "$schema" | "parameters" => {}
+                // What the studio keeps; it has no effect on the world.
+                "studio" => {
+                    if !matches!(value.value, Value::Table(_)) {
+                        self.complain(&value.span, format!("`studio` must be a table, not {}", value.value.describe()));
+                    }
+                }
                 "about" => match &value.value {
                     Value::Text(about) => recipe.about = about.clone(),
                     other => self.complain(&value.span, format!("`about` must be a string, not {}", other.describe())),
@@ -171,6 +177,7 @@ impl Walk<'_> {
                         "surface",
                         "scatter",
                         "class",
+                        "studio",
                     ];
                     let hint = suggestion(unknown, known);
                     self.complain(&key.span, format!("unknown key `{unknown}` in a recipe; {hint}"));

@@ -54,6 +54,7 @@ pub fn json_schema_of(registry: &Registry) -> Json {
             "surface": surface::list::SURFACES.schema(),
             "scatter": scatter::list::SCATTERS.schema(),
             "class": class::list::CLASSES.schema(),
+            "studio": { "type": "object", "description": "What the studio keeps with the recipe. It has no effect on the world." },
         },
         "definitions": {
             "input": {
@@ -68,7 +69,7 @@ pub fn json_schema_of(registry: &Registry) -> Json {
     for part in ["properties", "definitions"] {
         let parts = schema[part].as_object_mut().into_iter().flatten();
         parts
-            .filter(|(name, _)| !matches!(name.as_str(), "orogen" | "parameters"))
+            .filter(|(name, _)| !matches!(name.as_str(), "orogen" | "parameters" | "studio"))
             .for_each(|(_, part)| take_formulas(part));
     }
     schema

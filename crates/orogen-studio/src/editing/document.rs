@@ -8,6 +8,7 @@ use orogen::{Error, ErrorKind, Registry, Result};
 
 use super::edit::{self, Edit};
 use super::history::History;
+use super::kept::Kept;
 
 /// The text of an empty recipe.
 const EMPTY: &str =
@@ -27,6 +28,8 @@ pub struct Document {
     /// The text in the file; `None` if there is no file.
     saved: Option<String>,
     recipe: Recipe,
+    /// What the studio keeps in the text.
+    kept: Kept,
     diagnostics: Vec<Diagnostic>,
     revision: u64,
 }
@@ -43,6 +46,7 @@ impl Document {
             path: None,
             folder: None,
             origin: None,
+            kept: Kept::of(&text),
             history: History::new(text),
             saved: None,
             recipe,
@@ -95,6 +99,7 @@ impl Document {
             origin: None,
             history: History::new(text.clone()),
             saved: Some(text),
+            kept: Kept::default(),
             recipe: Recipe::new(orogen::WorldSpec::default()),
             diagnostics: Vec::new(),
             revision: 0,
@@ -185,6 +190,12 @@ impl Document {
         &self.recipe
     }
 
+    /// What the studio keeps in the text.
+    #[must_use]
+    pub fn kept(&self) -> &Kept {
+        &self.kept
+    }
+
     /// The errors of the text; empty if it is valid.
     #[must_use]
     pub fn diagnostics(&self) -> &[Diagnostic] {
@@ -236,6 +247,7 @@ impl Document {
         if !unchanged {
             self.revision += 1;
             self.recipe = recipe;
+            self.kept = Kept::of(self.text());
         }
         Ok(())
     }
@@ -254,10 +266,19 @@ impl Document {
         if !self.is_valid() {
             return Err(fault("the recipe's text has errors; mend them first".into()));
         }
+        if let Some(name) = self.kept.blocks(edit) {
+            return Err(fault(format!("`{name}` is locked; unlock it in the menu of its box first")));
+        }
         let (mut text, mut recipe) = (self.text().to_owned(), self.recipe.clone());
         for step in edit.steps() {
+            let renames = edit::renames(&recipe, step);
             text = edit::apply(&text, &recipe, step).map_err(fault)?;
             recipe = self.parse(&text)?;
+            let kept = Kept::of(&text);
+            let followed = kept.after(&renames, |name| recipe.nodes().iter().any(|named| named.name == name));
+            if followed != kept {
+                text = edit::apply(&text, &recipe, &Edit::Keep(followed)).map_err(fault)?;
+            }
         }
         Ok((text, recipe))
     }
@@ -328,6 +349,7 @@ impl Document {
 
     /// Parses the text.
     fn read(&mut self) {
+        self.kept = Kept::of(self.text());
         match self.parse(self.text()) {
             Ok(recipe) => {
                 self.recipe = recipe;

@@ -10,6 +10,7 @@ use orogen::value::Value;
 use toml_edit::{DocumentMut, Item, Table};
 
 use super::ground::{Ground, set_colors};
+use super::kept::Kept;
 use super::references::{Change, Site, change};
 use super::strokes::{self, Placement};
 use super::tables::{add_node, node, set, top, value_of};
@@ -57,6 +58,8 @@ pub enum Edit {
     Ungroup(String),
     /// Renames a group.
     RenameGroup { from: String, to: String },
+    /// Replaces what the studio keeps in the recipe.
+    Keep(Kept),
     /// Several edits, one after another, which are undone together. They rename nothing.
     Several(Vec<Edit>),
 }
@@ -90,6 +93,7 @@ impl Edit {
             Edit::Rename { .. } | Edit::RenameGroup { .. } => "edit.rename",
             Edit::Group { .. } => "edit.group",
             Edit::Ungroup(_) => "edit.ungroup",
+            Edit::Keep(_) => "edit.keep",
             Edit::Several(edits) => edits.first().map_or("edit.value", Edit::label),
         }
     }
@@ -252,6 +256,7 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
             }
             rename(&mut document, recipe, &renames)?;
         }
+        Edit::Keep(kept) => kept.write(&mut document)?,
         Edit::Several(_) => return Err("several edits are applied one by one".into()),
     }
     Ok(document.to_string())

@@ -11,6 +11,7 @@ pub mod expression;
 pub mod ground;
 pub mod groups;
 pub mod history;
+pub mod kept;
 pub mod names;
 pub mod notes;
 mod references;

@@ -36,6 +36,18 @@ pub fn read(specs: &'static [OptionSpec], given: &Given) -> Result<Options> {
     Options::of(specs, applying(specs, given).map(|(spec, text)| (spec.name, text)))
 }
 
+/// The options of declarations from texts that a recipe keeps; unknown ones are dropped.
+#[must_use]
+pub fn of_kept(specs: &'static [OptionSpec], kept: &BTreeMap<String, String>) -> Given {
+    specs.iter().filter_map(|spec| Some((spec.name, kept.get(spec.name)?.clone()))).collect()
+}
+
+/// The options as a recipe keeps them: those that apply.
+#[must_use]
+pub fn kept(specs: &'static [OptionSpec], given: &Given) -> BTreeMap<String, String> {
+    applying(specs, given).map(|(spec, text)| (spec.name.to_owned(), text.to_owned())).collect()
+}
+
 /// Adds the options to a command line.
 pub fn words(specs: &'static [OptionSpec], given: &Given, line: &mut CommandLine) {
     for (spec, text) in applying(specs, given) {

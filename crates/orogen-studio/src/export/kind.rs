@@ -26,6 +26,24 @@ impl Kind {
         (Kind::Tilemap, "export.kind_tilemap"),
     ];
 
+    /// Its name in recipes.
+    #[must_use]
+    pub fn keyword(self) -> &'static str {
+        match self {
+            Kind::Layer => "layer",
+            Kind::Engine => "engine",
+            Kind::Map => "map",
+            Kind::Render => "render",
+            Kind::Tilemap => "tilemap",
+        }
+    }
+
+    /// The kind with this name in recipes.
+    #[must_use]
+    pub fn of_keyword(name: &str) -> Option<Kind> {
+        Kind::ALL.into_iter().map(|(kind, _)| kind).find(|kind| kind.keyword() == name)
+    }
+
     /// The suffix of its file name after the name of the recipe, so that no kind replaces the file of another one.
     #[must_use]
     pub fn suffix(self) -> &'static str {

@@ -6,6 +6,7 @@
 pub mod command_line;
 pub mod engine;
 pub mod given;
+pub mod kept;
 pub mod kind;
 pub mod layer;
 pub mod map;

@@ -257,3 +257,37 @@ fn what_is_cancelled_leaves_no_file() {
     }
     assert!(folder.names().is_empty(), "{:?}", folder.names());
 }
+
+#[test]
+fn what_a_recipe_keeps_makes_the_same_command_line() {
+    let folder = Path::new("/lands");
+    for (kind, _) in Kind::ALL {
+        let mut first = export(kind, folder);
+        match kind {
+            Kind::Layer => {
+                first.layer.set_format(registry::named("png").unwrap(), None);
+                first.layer.set_layer("hillshade");
+                first.layer.size = Some(300);
+                give(&mut first.layer.options, &[("bits", "8")]);
+                give(&mut first.layer.layer_options, &[("azimuth", "300")]);
+            }
+            Kind::Engine => {
+                first.engine.set_target(list::named("unreal").unwrap());
+                (first.engine.side, first.engine.tiles) = (Some(253), [2, 3]);
+            }
+            Kind::Map => give(&mut first.map.options, &[("title", "A land")]),
+            Kind::Render => give(&mut first.render.options, &[("exaggeration", "2")]),
+            Kind::Tilemap => first.tilemap.size = 48,
+        }
+        first.set_extension();
+        first.region = Region::Square { center: [3000.0, 4000.0], side: 2000.0 };
+        let kept = first.to_kept(folder);
+        assert!(!kept.file.contains('/'), "{}", kept.file);
+        let other = export(Kind::Layer, folder);
+        let again = Export::of_kept(&kept, folder, &other).unwrap();
+        assert_eq!(line(&again), line(&first));
+        assert_eq!(again.to_kept(folder), kept);
+    }
+    let unknown = crate::editing::kept::KeptExport { kind: "later".into(), ..Default::default() };
+    assert!(Export::of_kept(&unknown, folder, &export(Kind::Layer, folder)).is_none());
+}

@@ -8,6 +8,7 @@ use orogen::grid::words::number;
 use super::action::Action;
 use super::dialogs::{Overwrite, window};
 use super::export_fields::{engine, layer, map, render, rows, tilemap};
+use super::export_list::ExportList;
 use super::relief_panel::ShownView;
 use crate::catalogue::Language;
 use crate::export::kind::Kind;
@@ -29,11 +30,13 @@ pub struct ExportDialog {
     outcome: Option<Result<String, String>>,
     /// The question whether existing files may be replaced.
     asks: Option<Overwrite>,
+    /// The exports that the recipe keeps.
+    list: ExportList,
 }
 
 /// Maximum height of the fields, and the height of the other parts.
 const HEIGHT: f32 = 410.0;
-const OTHER: f32 = 370.0;
+const OTHER: f32 = 400.0;
 
 impl ExportDialog {
     /// A dialog for the document of the studio. A render starts with the settings of the 3D view.
@@ -44,7 +47,15 @@ impl ExportDialog {
         let mut export = Export::new(studio.look.region, document.title(), document.is_place(), &folder)?;
         render::follow(&mut export.render, view);
         let path = shown(&export);
-        Some(ExportDialog { path, export, running: None, made: String::new(), outcome: None, asks: None })
+        Some(ExportDialog {
+            path,
+            export,
+            running: None,
+            made: String::new(),
+            outcome: None,
+            asks: None,
+            list: ExportList::default(),
+        })
     }
 
     /// The export with its settings.
@@ -69,6 +80,10 @@ impl ExportDialog {
         if self.running.is_none() {
             self.export.region = studio.look.region;
         }
+        self.list.go_on(context, studio, &self.export, wake, language);
+        if self.list.is_asking() {
+            return true;
+        }
         if let Some(answer) = self.asks.as_ref().and_then(|asks| asks.show(context, language)) {
             self.asks = None;
             if answer {
@@ -78,10 +93,12 @@ impl ExportDialog {
         }
         let mut is_open = true;
         window(context, language.text("export.title"), &mut is_open, vec2(520.0, 420.0), |ui| {
-            ui.add_enabled_ui(self.running.is_none(), |ui| {
+            let is_free = self.running.is_none() && !self.list.is_busy();
+            ui.add_enabled_ui(is_free, |ui| {
                 self.kinds(ui, language);
                 ui.separator();
-                let height = (context.content_rect().height() - OTHER).clamp(60.0, HEIGHT);
+                let other = OTHER + ExportList::height(studio);
+                let height = (context.content_rect().height() - other).clamp(60.0, HEIGHT);
                 let area = ScrollArea::vertical().max_height(height).auto_shrink([false, true]);
                 area.show(ui, |ui| self.fields(ui, studio, view, language));
                 ui.add_space(4.0);
@@ -89,8 +106,13 @@ impl ExportDialog {
             });
             ui.separator();
             self.ending(ui, studio, wake, language, actions);
+            ui.separator();
+            if let Some(chosen) = self.list.show(ui, (studio, &self.export), language, actions) {
+                self.path = shown(&chosen);
+                (self.export, self.outcome) = (chosen, None);
+            }
         });
-        let is_free = self.running.is_none() && self.asks.is_none();
+        let is_free = self.running.is_none() && self.asks.is_none() && !self.list.is_busy();
         is_open && !(is_free && context.input(|input| input.key_pressed(egui::Key::Escape)))
     }
 
@@ -160,9 +182,9 @@ impl ExportDialog {
                     ui.add(ProgressBar::new(running.share()).desired_width(200.0).show_percentage());
                 }
                 None => {
-                    let is_asking = self.asks.is_some();
+                    let can = self.asks.is_none() && !self.list.is_busy();
                     let start = egui::Button::new(RichText::new(language.text("export.start")).strong());
-                    if ui.add_enabled(!is_asking, start).clicked() {
+                    if ui.add_enabled(can, start).clicked() {
                         self.asks = Overwrite::of(self.export.path());
                         if self.asks.is_none() {
                             self.start(studio, wake);
@@ -190,6 +212,12 @@ impl ExportDialog {
             Ok(running) => self.running = Some(running),
             Err(error) => self.outcome = Some(Err(error.to_string())),
         }
+    }
+
+    /// The exports that the recipe keeps.
+    #[must_use]
+    pub fn list(&self) -> &ExportList {
+        &self.list
     }
 
     /// The result of the last export; `None` while it runs.

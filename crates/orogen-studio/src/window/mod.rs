@@ -11,6 +11,7 @@ pub mod device;
 pub mod dialogs;
 pub mod export_dialog;
 pub mod export_fields;
+pub mod export_list;
 pub mod expression_field;
 pub mod fields;
 pub mod fonts;

@@ -266,3 +266,50 @@ fn every_kind_is_exported_from_the_dialog() {
         assert!(own == taken(&files), "{line}");
     }
 }
+
+#[test]
+fn the_exports_of_a_recipe_are_kept_in_it_and_made_together() {
+    let folder = TestFolder::new("studio-exports").unwrap();
+    let recipe = folder.join("land.toml");
+    std::fs::write(&recipe, orogen::presets::find("classic").unwrap().text).unwrap();
+    let mut harness = window(&folder, recipe.to_str(), Language::English);
+    until_done(&mut harness);
+    press(&mut harness, Modifiers::COMMAND, Key::E);
+    for name in ["a.png", "b.r32"] {
+        harness.get_by_role_and_label(Role::TextInput, "file of export").focus();
+        harness.run_steps(2);
+        press(&mut harness, Modifiers::COMMAND, Key::A);
+        let path = folder.join(name);
+        harness.get_by_role_and_label(Role::TextInput, "file of export").type_text(&path.to_string_lossy());
+        harness.run_steps(3);
+        harness.get_by_label("Add this one").click();
+        harness.run_steps(3);
+    }
+    let kept = &studio(&harness).document.kept().exports;
+    assert_eq!(kept.iter().map(|export| export.file.as_str()).collect::<Vec<_>>(), ["a.png", "b.r32"]);
+    harness.get_by_label("Make all").click();
+    harness.run_steps(2);
+    until(&mut harness, "the exports", |app| app.export_dialog().unwrap().list().results().count() == 2);
+    assert!(harness.state().export_dialog().unwrap().list().results().all(Result::is_ok));
+    let first = ["a.png", "b.r32"].map(|name| std::fs::read(folder.join(name)).unwrap());
+    run(&format!("orogen export {} --out {}", recipe.display(), folder.join("c.r32").display()));
+    assert!(std::fs::read(folder.join("c.r32")).unwrap() == first[1]);
+    // The second time it is asked for each file; a refusal leaves one out.
+    harness.get_by_label("Make all").click();
+    harness.run_steps(3);
+    until(&mut harness, "the first question", |app| app.export_dialog().unwrap().list().is_asking());
+    harness.run_steps(3);
+    harness.get_by_label("Replace").click();
+    harness.run_steps(3);
+    until(&mut harness, "the second question", |app| app.export_dialog().unwrap().list().is_asking());
+    harness.run_steps(3);
+    harness.get_by_label("Cancel").click();
+    harness.run_steps(3);
+    let list = harness.state().export_dialog().unwrap().list();
+    assert!(!list.is_busy() && list.results().count() == 1);
+    // They are saved with the recipe.
+    press(&mut harness, Modifiers::NONE, Key::Escape);
+    press(&mut harness, Modifiers::COMMAND, Key::S);
+    let text = std::fs::read_to_string(&recipe).unwrap();
+    assert!(text.contains("[studio]\nexports = [\n") && text.contains("file = \"b.r32\""), "{text}");
+}
