@@ -1,5 +1,5 @@
-//! What the studio keeps in a recipe, in the table `[studio]`: a list of exports, frames of the graph, and locked nodes.
-//! It has no effect on the world.
+//! What the studio keeps in a recipe, in the table `[studio]`: a list of exports, frames of the graph, and locked
+//! nodes. It has no effect on the world.
 
 use std::collections::BTreeMap;
 
