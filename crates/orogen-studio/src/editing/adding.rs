@@ -8,11 +8,14 @@ use orogen::recipe::Recipe;
 use orogen::value::Value;
 use orogen::world::HEIGHT;
 
-use super::drawing;
 use super::edit::{Edit, Reader};
+use super::{drawing, names};
 
 /// Maximum number of steps within the relief of a land.
 const LEVELS: usize = 20;
+
+/// The op that evaluates a node once for the whole world.
+const BAKE: &str = "bake";
 
 /// Where a new node goes.
 #[derive(Debug, Clone, Copy)]
@@ -52,6 +55,35 @@ pub fn edit(recipe: &Recipe, name: String, op: &str, after: After, range: Option
     let params = range.filter(|_| is_of_land).map(|range| suiting(op, range)).unwrap_or_default();
     let params = params.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
     Edit::Add { name, op: op.to_owned(), inputs: vec![(key.to_owned(), source)], params, readers }
+}
+
+/// The edit that bakes a node: a node of the op `bake` is between it and all that reads it. `None` if the world has no
+/// sides, or the node is one.
+#[must_use]
+pub fn baked(recipe: &Recipe, name: &str) -> Option<Edit> {
+    let named = recipe.nodes().iter().find(|named| named.name == name)?;
+    if recipe.world.size.is_none() || named.node.spec().op == BAKE {
+        return None;
+    }
+    let is_it = |input: &Input| matches!(input, Input::Node(read) if read == name);
+    let mut readers = Vec::new();
+    for other in recipe.nodes() {
+        let inputs = other.node.inputs();
+        let keys = inputs.iter().enumerate().filter(|(i, _)| is_it(other.node.input(*i)));
+        let mask = is_it(&other.mask).then_some("mask");
+        let keys = keys.map(|(_, input)| input.name).chain(mask);
+        readers.extend(keys.map(|key| Reader::Input { node: other.name.clone(), key: key.to_string() }));
+    }
+    let outputs = recipe.output_inputs().iter().filter(|(_, input)| is_it(input));
+    readers.extend(outputs.map(|(output, _)| Reader::Output(output.clone())));
+    let taken = recipe.nodes().iter().map(|named| named.name.as_str()).collect();
+    Some(Edit::Add {
+        name: names::free(&format!("{name}_baked"), &taken),
+        op: BAKE.to_owned(),
+        inputs: vec![("source".to_owned(), name.to_owned())],
+        params: Vec::new(),
+        readers,
+    })
 }
 
 /// The output of heights, if it is a number, as in an empty recipe: the first node is the land.
@@ -198,6 +230,18 @@ mod tests {
         // A wire that is gone.
         let gone = Reader::Input { node: "none".into(), key: "source".into() };
         assert!(text_with("blur", After::Wire(&gone), None).contains("source = 0"));
+    }
+
+    #[test]
+    fn a_baked_node_is_read_by_what_read_it() {
+        let mut document = Document::new("test", TEXT.into()).unwrap();
+        document.apply(&baked(document.recipe(), "hills").unwrap()).unwrap();
+        let text = document.text();
+        assert!(text.contains("[nodes.hills_baked]\nop = \"bake\"\nsource = \"hills\""), "{text}");
+        assert!(text.contains("source = \"hills_baked\"") && text.contains("base = \"hills_baked\""), "{text}");
+        assert_eq!(baked(document.recipe(), "hills_baked"), None);
+        let endless = Document::new("test", TEXT.replace("size = 1000\n", "")).unwrap();
+        assert_eq!(baked(endless.recipe(), "hills"), None);
     }
 
     #[test]

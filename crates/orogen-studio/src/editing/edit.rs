@@ -60,6 +60,8 @@ pub enum Edit {
     RenameGroup { from: String, to: String },
     /// Replaces what the studio keeps in the recipe.
     Keep(Kept),
+    /// Sets the title of a frame, by its index.
+    FrameTitle { frame: usize, title: String },
     /// Several edits, one after another, which are undone together. They rename nothing.
     Several(Vec<Edit>),
 }
@@ -93,7 +95,7 @@ impl Edit {
             Edit::Rename { .. } | Edit::RenameGroup { .. } => "edit.rename",
             Edit::Group { .. } => "edit.group",
             Edit::Ungroup(_) => "edit.ungroup",
-            Edit::Keep(_) => "edit.keep",
+            Edit::Keep(_) | Edit::FrameTitle { .. } => "edit.keep",
             Edit::Several(edits) => edits.first().map_or("edit.value", Edit::label),
         }
     }
@@ -117,6 +119,7 @@ impl Edit {
             Edit::Default { parameter, .. } => Some(format!("parameter/{parameter}")),
             Edit::Param { node, key, .. } => Some(format!("node/{node}/{key}")),
             Edit::Note { node, .. } => Some(format!("note/{node}")),
+            Edit::FrameTitle { frame, .. } => Some(format!("frame/{frame}")),
             Edit::Colors { ground, index, .. } => Some(format!("colors/{ground:?}/{index}")),
             Edit::Stroke { node, at, .. } => Some(format!("stroke/{node}/{at}")),
             _ => None,
@@ -257,6 +260,11 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
             rename(&mut document, recipe, &renames)?;
         }
         Edit::Keep(kept) => kept.write(&mut document)?,
+        Edit::FrameTitle { frame, title } => {
+            let mut kept = Kept::of(text);
+            kept.frames.get_mut(*frame).ok_or_else(|| missing("such frame"))?.title.clone_from(title);
+            kept.write(&mut document)?;
+        }
         Edit::Several(_) => return Err("several edits are applied one by one".into()),
     }
     Ok(document.to_string())

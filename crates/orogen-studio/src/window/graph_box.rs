@@ -89,6 +89,8 @@ pub struct Shown<'a> {
     pub is_selected: bool,
     /// Whether it is bypassed: its title is dim.
     pub is_bypassed: bool,
+    /// Whether it is locked.
+    pub is_locked: bool,
     /// Whether the view shows its layer.
     pub is_in_view: bool,
     /// Its small picture.
@@ -129,6 +131,17 @@ pub fn draw(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, 
     if shown.is_in_view {
         let place = title.right_top() + vec2(-10.0, 10.0) * zoom;
         painter.circle_filled(place, 4.0 * zoom, Color32::from_rgb(255, 214, 90));
+    }
+    if shown.is_locked {
+        let body = Rect::from_min_size(title.right_top() + vec2(-24.0, 16.0) * zoom, vec2(13.0, 10.0) * zoom);
+        let pen = Stroke::new(2.0 * zoom, Color32::WHITE);
+        painter.rect_stroke(
+            Rect::from_min_max(body.min + vec2(3.0, -6.0) * zoom, body.max - vec2(3.0, 0.0) * zoom),
+            3.0 * zoom,
+            pen,
+            StrokeKind::Inside,
+        );
+        painter.rect_filled(body, 1.5 * zoom, Color32::WHITE);
     }
     if zoom > NAMED {
         words(painter, visuals, block, rect, shown);

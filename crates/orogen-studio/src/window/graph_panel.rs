@@ -13,14 +13,13 @@ use super::action::Action;
 use super::command::Command;
 use super::graph_box::{self, Shown, WIDTH};
 use super::graph_search::{Found, Search};
-use super::menu;
 use crate::catalogue::Language;
 use crate::editing::adding::After;
 use crate::editing::brush::Effect;
 use crate::editing::edit::{Edit, Reader};
 use crate::editing::{adding, bypass, drawing, groups, names, strokes};
 use crate::preview::picture::Picture;
-use crate::studio::{Studio, surface};
+use crate::studio::Studio;
 use crate::view::arrangement::{self, Area};
 use crate::view::scene::{GraphBox, Kind, Scene};
 
@@ -119,6 +118,7 @@ impl Graph {
         painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
         let scene = std::mem::take(&mut self.scene);
         let rects: Vec<Rect> = scene.boxes.iter().map(|block| self.rect_of(block, studio, origin)).collect();
+        self.show_frames(ui, &painter, (&scene, &rects), (studio, language), actions);
         self.draw_wires(ui, &painter, &scene, &rects, studio);
         for (block, own) in scene.boxes.iter().zip(&rects) {
             self.show_box(ui, &painter, block, *own, (rect, studio, language), &scene, actions);
@@ -304,24 +304,19 @@ impl Graph {
         let is_own = !matches!(block.kind, Kind::Outside | Kind::Output);
         let is_selected = is_own && block.nodes.iter().all(|name| studio.selected.contains(name));
         if response.dragged_by(PointerButton::Primary) {
-            self.fitted = None;
             let moved = |other: &&GraphBox| {
                 other.id == block.id
                     || is_selected
                         && !matches!(other.kind, Kind::Outside | Kind::Output)
                         && other.nodes.iter().all(|name| studio.selected.contains(name))
             };
-            for key in scene.boxes.iter().filter(moved).map(|block| self.key(block)).collect::<Vec<_>>() {
-                if let Some(place) = self.places.get_mut(&key) {
-                    *place += response.drag_delta() / self.zoom;
-                }
-            }
+            self.drag(scene.boxes.iter().filter(moved), response.drag_delta());
         }
         self.click(ui, &response, block, is_selected, studio, actions);
         // Names that are too long or too small for the box.
         let response = response.on_hover_text(&block.title);
         if is_own {
-            response.context_menu(|ui| self.menu(ui, block, studio, language, actions));
+            response.context_menu(|ui| self.menu(ui, block, (studio, language), actions));
         }
         let shown = Shown {
             language,
@@ -332,6 +327,7 @@ impl Graph {
                     .nodes()
                     .iter()
                     .any(|named| named.name == block.id && bypass::is_bypassed(named)),
+            is_locked: block.nodes.iter().any(|name| studio.document.kept().locked.contains(name)),
             is_selected,
             is_in_view: block.nodes.contains(&studio.look.layer)
                 || block.kind == Kind::Output && block.title == studio.look.layer,
@@ -351,6 +347,16 @@ impl Graph {
             grip.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, format!("output {name}")));
             if grip.drag_started() {
                 self.wire = Some(name.clone());
+            }
+        }
+    }
+
+    /// Moves boxes.
+    pub(super) fn drag<'a>(&mut self, boxes: impl Iterator<Item = &'a GraphBox>, by: Vec2) {
+        self.fitted = None;
+        for key in boxes.map(|block| self.key(block)).collect::<Vec<_>>() {
+            if let Some(place) = self.places.get_mut(&key) {
+                *place += by / self.zoom;
             }
         }
     }
@@ -391,48 +397,6 @@ impl Graph {
             match block.group_name() {
                 Some(group) => self.enter(group),
                 None => actions.extend(block.nodes.first().map(|name| Action::Show(name.clone()))),
-            }
-        }
-    }
-
-    /// The menu of a box.
-    fn menu(&mut self, ui: &mut Ui, block: &GraphBox, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
-        let mut entry = |ui: &mut Ui, text: &'static str, action: Option<Action>| {
-            let is_clicked = ui.button(language.text(text)).clicked();
-            if is_clicked {
-                actions.extend(action);
-                ui.close();
-            }
-            is_clicked
-        };
-        match block.group_name() {
-            Some(group) => {
-                if entry(ui, "graph.enter", None) {
-                    self.enter(group);
-                }
-            }
-            None => {
-                let node = block.nodes.first();
-                entry(ui, "inspector.show", node.map(|name| Action::Show(name.clone())));
-                let recipe = studio.document.recipe();
-                let name = surface(recipe);
-                let source = Input::Node(block.id.clone());
-                let is_it = recipe.output_inputs().iter().any(|(output, input)| *output == name && *input == source);
-                if studio.document.is_valid() && !is_it {
-                    entry(ui, "graph.use_as_height", Some(Action::Edit(Edit::Output { name, source })));
-                }
-                let named = node.and_then(|name| recipe.nodes().iter().find(|named| named.name == *name));
-                if let Some(edit) = named.and_then(bypass::toggled).filter(|_| studio.document.is_valid()) {
-                    let text = if named.is_some_and(bypass::is_bypassed) { "graph.use_again" } else { "graph.bypass" };
-                    entry(ui, text, Some(Action::Edit(edit)));
-                }
-            }
-        }
-        ui.separator();
-        for command in [Command::Group, Command::Ungroup, Command::Duplicate, Command::Rename, Command::Delete] {
-            let Some(declared) = command.entry() else { continue };
-            if menu::is_enabled(command, Some(studio)) {
-                entry(ui, declared.name, Some(Action::Command(command)));
             }
         }
     }

@@ -16,6 +16,7 @@ use super::ground;
 use crate::catalogue::Language;
 use crate::editing::edit::Edit;
 use crate::editing::expression::Site;
+use crate::editing::kept::Kept;
 use crate::editing::{groups, names, notes};
 use crate::studio::Studio;
 
@@ -180,6 +181,17 @@ impl Inspector {
             }
             ui.weak(language.named(spec.op)).on_hover_text(language.hint(spec.op, spec.doc));
         });
+        let kept = studio.document.kept();
+        let is_locked = kept.locked.contains(name);
+        if is_locked {
+            ui.horizontal(|ui| {
+                ui.colored_label(ui.visuals().warn_fg_color, language.text("inspector.locked"));
+                if ui.button(language.text("graph.unlock")).clicked() {
+                    let locked = kept.locked.iter().filter(|other| *other != name).cloned().collect();
+                    actions.push(Action::Edit(Edit::Keep(Kept { locked, ..kept.clone() })));
+                }
+            });
+        }
         ui.horizontal(|ui| {
             let is_shown = studio.look.layer == *name;
             if ui.selectable_label(is_shown, language.text("inspector.show")).clicked() {
@@ -196,6 +208,9 @@ impl Inspector {
         ui.label(RichText::new(language.told_shortly(spec.doc)).weak().small());
         self.note(ui, name, studio, language, actions);
         ui.add_space(4.0);
+        if is_locked {
+            ui.disable();
+        }
         let inputs = node.inputs();
         for (i, input) in inputs.iter().enumerate() {
             let declared = spec.input_named(input.name).map(|at| &spec.inputs[at]);

@@ -16,6 +16,8 @@ pub mod expression_field;
 pub mod fields;
 pub mod fonts;
 pub mod graph_box;
+mod graph_frames;
+mod graph_menu;
 pub mod graph_panel;
 mod graph_places;
 pub mod graph_search;

@@ -1,12 +1,14 @@
 //! Going back, finding ops and palettes, looking from other sides.
 
-use eframe::egui::{Key, Modifiers, Role};
+use eframe::egui::{Key, Modifiers, Role, vec2};
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use orogen::io::test_folder::TestFolder;
 use orogen_studio::catalogue::Language;
 use orogen_studio::preview::coloring::Coloring;
+use orogen_studio::window::app::App;
 
-use super::{press, studio, until, until_done, window};
+use super::{drag_along, press, studio, until, until_done, window};
 
 #[test]
 fn the_history_goes_to_any_step() {
@@ -65,7 +67,7 @@ fn the_camera_looks_from_a_side_and_keeps_views() {
     let mut harness = window(&folder, Some("classic"), Language::English);
     until_done(&mut harness);
     let begun = harness.state().shown_view().unwrap().camera;
-    let choose = |harness: &mut egui_kittest::Harness<'_, _>, name: &str| {
+    let choose = |harness: &mut Harness<'_, _>, name: &str| {
         harness.get_by_label("Views").click();
         harness.run_steps(3);
         harness.get_by_label(name).click();
@@ -136,4 +138,40 @@ fn a_node_has_a_note_in_the_recipe() {
     let text = studio(&harness).document.text();
     assert!(text.contains("# from -160 to 240 m\n[nodes.terrain]\n"), "{text}");
     press(&mut harness, Modifiers::COMMAND, Key::Z);
+}
+
+#[test]
+fn nodes_are_locked_baked_and_framed() {
+    let folder = TestFolder::new("studio-frames").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until_done(&mut harness);
+    let choose = |harness: &mut Harness<'_, App>, box_name: &str, entry: &str| {
+        harness.get_by_label(box_name).click_secondary();
+        harness.run_steps(4);
+        harness.get_by_label(entry).click();
+        harness.run_steps(4);
+    };
+    choose(&mut harness, "node noise", "Lock");
+    assert_eq!(studio(&harness).document.kept().locked, ["noise"]);
+    let text = studio(&harness).document.text().to_owned();
+    harness.get_by_label("node noise").click();
+    harness.run_steps(3);
+    harness.get_by_label("Delete").click();
+    harness.run_steps(4);
+    assert_eq!(studio(&harness).document.text(), text);
+    assert!(harness.query_by_label_contains("is locked").is_some());
+    press(&mut harness, Modifiers::NONE, Key::Escape);
+    harness.get_by_label("Unlock").click();
+    harness.run_steps(4);
+    choose(&mut harness, "node noise", "Put a frame around the selection");
+    assert!(harness.query_by_label("frame Frame").is_some());
+    // The frame moves its boxes.
+    let before = harness.get_by_label("node noise").rect();
+    let title = harness.get_by_label("frame Frame").rect().center();
+    drag_along(&mut harness, &[title, title + vec2(0.0, 15.0), title + vec2(0.0, 30.0)]);
+    assert!(harness.get_by_label("node noise").rect().top() > before.top() + 15.0);
+    choose(&mut harness, "node noise", "Bake (compute once for the whole world)");
+    assert!(studio(&harness).document.text().contains("op = \"bake\"\nsource = \"noise\""));
+    choose(&mut harness, "frame Frame", "Remove the frame");
+    assert!(studio(&harness).document.kept().frames.is_empty());
 }
