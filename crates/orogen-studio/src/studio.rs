@@ -8,16 +8,18 @@ use orogen::declare::Input;
 use orogen::io::dem::prepared::DEFAULT_MEMORY;
 use orogen::recipe::{NamedNode, Recipe, RecipeSource};
 use orogen::world::HEIGHT;
-use orogen::{Error, ErrorKind, Result, Session};
+use orogen::{Error, ErrorKind, Result, Session, Window};
 
 use crate::editing::document::Document;
 use crate::editing::edit::{Edit, renames};
 use crate::editing::{groups, strokes};
 use crate::files;
 use crate::preview::coloring::Coloring;
+use crate::preview::detail::Detail;
 use crate::preview::frame::{Frame, Quality};
 use crate::preview::region::Region;
 use crate::preview::request::Request;
+use crate::preview::ring::Ring;
 use crate::preview::thumbnails::Thumbnails;
 use crate::preview::worker::{Event, Wake, Worker};
 
@@ -55,6 +57,8 @@ pub struct Studio {
     /// Whether small pictures of the nodes are made.
     pub has_thumbnails: bool,
     worker: Worker,
+    /// Rings of detail in the 3D view.
+    detail: Detail,
     /// The revision and region for which the current small pictures were requested.
     asked_small: Option<(u64, Region)>,
     /// The revision of the text and the look for which the current pictures were requested.
@@ -78,6 +82,7 @@ impl Studio {
             failure: None,
             thumbnails: Thumbnails::new(Arc::clone(&wake)),
             has_thumbnails: true,
+            detail: Detail::new(Arc::clone(&wake)),
             worker: Worker::new(session, wake),
             asked_small: None,
             asked: None,
@@ -103,6 +108,7 @@ impl Studio {
         self.land = None;
         self.asked_small = None;
         self.thumbnails.cancel();
+        self.detail.clear();
     }
 
     /// Applies an edit.
@@ -176,12 +182,12 @@ impl Studio {
             self.look.coloring = Coloring::Own;
         }
         self.refresh_thumbnails();
-        let recipe = self.document.recipe();
         let now = (self.document.revision(), self.look.clone());
         if self.asked.as_ref() == Some(&now) {
             return;
         }
         self.asked = Some(now);
+        self.detail.cancel();
         if !self.document.is_valid() {
             return;
         }
@@ -190,8 +196,14 @@ impl Studio {
             *revision == self.document.revision() && look.has_land_of(&self.look)
         };
         let land = self.land.as_ref().filter(is_same).map(|(.., frame)| Arc::clone(frame));
-        self.worker.ask(Request {
-            land,
+        self.worker.ask(Request { land, ..self.request() });
+    }
+
+    /// The request for pictures of the current text and look.
+    fn request(&self) -> Request {
+        let recipe = self.document.recipe();
+        Request {
+            land: None,
             recipe: recipe.clone(),
             layer: self.look.layer.clone(),
             surface: surface(recipe),
@@ -200,7 +212,45 @@ impl Studio {
             sun: self.look.sun,
             contours: self.look.contours,
             finest: self.look.finest,
-        });
+        }
+    }
+
+    /// Requests rings of detail with these windows, from coarse to fine, for the finest picture. `None` cancels the work
+    /// for rings, because the camera moves.
+    pub fn refine(&mut self, windows: Option<Vec<Window>>) {
+        match (windows, &self.frame) {
+            (Some(windows), Some(frame)) if self.is_current() => {
+                self.detail.ask(self.worker.session(), self.request(), frame, windows);
+            }
+            _ => self.detail.cancel(),
+        }
+    }
+
+    /// The requested windows of rings; `None` if the work was cancelled, or there is none.
+    #[must_use]
+    pub fn refining(&self) -> Option<&[Window]> {
+        self.detail.asked()
+    }
+
+    /// Whether rings of detail are being made.
+    #[must_use]
+    pub fn is_refining(&self) -> bool {
+        self.detail.is_busy()
+    }
+
+    /// The rings of detail of the picture, from coarse to fine.
+    #[must_use]
+    pub fn rings(&self) -> Vec<Arc<Ring>> {
+        self.frame.as_ref().map_or_else(Vec::new, |frame| self.detail.rings(frame))
+    }
+
+    /// Whether the picture is the finest one of the current text and look.
+    fn is_current(&self) -> bool {
+        let is_asked = self
+            .asked
+            .as_ref()
+            .is_some_and(|(revision, look)| *revision == self.document.revision() && *look == self.look);
+        is_asked && self.is_done() && self.document.is_valid()
     }
 
     /// Requests small pictures of the nodes when the picture of the land is done; a change cancels them.
@@ -224,6 +274,7 @@ impl Studio {
     pub fn poll(&mut self) -> bool {
         let mut is_new = false;
         self.thumbnails.poll();
+        self.detail.poll();
         for event in self.worker.events() {
             match event {
                 Event::Frame(frame) => {

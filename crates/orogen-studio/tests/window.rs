@@ -10,6 +10,8 @@ mod finding;
 mod manners;
 #[path = "window/random.rs"]
 mod random;
+#[path = "window/speed.rs"]
+mod speed;
 #[path = "window/tools.rs"]
 mod tools;
 #[path = "window/unsaved.rs"]

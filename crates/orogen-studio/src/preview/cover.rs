@@ -19,11 +19,18 @@ pub fn prepare(recipe: &mut Recipe, coloring: &Coloring) {
     }
 }
 
-/// Colors without light over the window of the heights, four bytes per sample, and their legend.
+/// Colors without light over the window of the heights, four bytes per sample, and their legend. The colors of the sea
+/// are those for the depths of all of the `land`.
 ///
 /// # Errors
 /// If the recipe has no cover of this kind, or the world fails.
-pub fn paint(world: &World, coloring: &Coloring, heights: &Grid, progress: &Progress) -> Result<(Vec<u8>, Legend)> {
+pub fn paint(
+    world: &World,
+    coloring: &Coloring,
+    heights: &Grid,
+    land: &Grid,
+    progress: &Progress,
+) -> Result<(Vec<u8>, Legend)> {
     let recipe = world.recipe();
     match coloring {
         Coloring::Classes => {
@@ -36,7 +43,7 @@ pub fn paint(world: &World, coloring: &Coloring, heights: &Grid, progress: &Prog
                 .ok_or_else(|| Error::new(ErrorKind::Request, "no output of this recipe is the layer of a `biome`"))?;
             codes(world, output, &classes, heights, progress)
         }
-        _ => surfaces(world, heights, progress),
+        _ => surfaces(world, heights, land, progress),
     }
 }
 
@@ -64,11 +71,11 @@ fn codes(
 }
 
 /// The albedo of the surfaces; the sea has the colors of its depth.
-fn surfaces(world: &World, heights: &Grid, progress: &Progress) -> Result<(Vec<u8>, Legend)> {
+fn surfaces(world: &World, heights: &Grid, land: &Grid, progress: &Progress) -> Result<(Vec<u8>, Legend)> {
     let sea_level = world.recipe().world.sea_level;
     let cover = sheet_cover::of(world, heights, Some(sea_level), progress).map_err(failure::of_stream)?;
     let [red, green, blue] = &cover.albedo;
-    let (encoder, tint) = (Encoder::new(), Tint::fit(heights, sea_level as f32));
+    let (encoder, tint) = (Encoder::new(), Tint::fit(land, sea_level as f32));
     let mut bytes = Vec::with_capacity(4 * heights.data().len());
     let albedo = red.data().iter().zip(green.data()).zip(blue.data());
     for (height, ((red, green), blue)) in heights.data().iter().zip(albedo) {

@@ -6,6 +6,7 @@ use orogen::budget::Reservation;
 use orogen::layer::LayerKind;
 use orogen::{Grid, Window};
 
+use super::colors::Colors;
 use super::contours::Contours;
 use super::legend::Legend;
 use super::statistics::Statistics;
@@ -36,12 +37,16 @@ pub struct Frame {
     pub quality: Quality,
     /// The heights of the surface, in metres.
     pub heights: Arc<Grid>,
+    /// The lowest and the highest height, in metres; 0 if no sample has a height.
+    pub levels: [f32; 2],
     /// The colored layer, unless it is the surface.
     pub values: Option<Arc<Grid>>,
     /// The kind of quantity of the colored layer.
     pub kind: LayerKind,
     /// The unit of the colored layer, or empty.
     pub unit: &'static str,
+    /// How values are converted to colors; `None` if the colors show the cover of the ground.
+    pub colors: Option<Colors>,
     /// Colors without light: red, green, blue and 255 for each sample, sRGB.
     pub albedo: Vec<u8>,
     /// The legend of the colors.
@@ -80,10 +85,7 @@ impl Frame {
     /// The lowest and the highest height in metres.
     #[must_use]
     pub fn range(&self) -> [f64; 2] {
-        let finite = self.heights.data().iter().copied().filter(|height| height.is_finite());
-        finite
-            .fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], height| [low.min(height), high.max(height)])
-            .map(f64::from)
+        self.levels.map(f64::from)
     }
 
     /// The window.

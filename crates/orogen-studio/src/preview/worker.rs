@@ -36,6 +36,9 @@ pub enum Event {
 /// Called from any thread when there is something new to show.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
+/// Minimum time between two reports of the completed share, in milliseconds.
+const BETWEEN: u32 = 150;
+
 /// Makes pictures.
 pub struct Worker {
     session: Session,
@@ -65,14 +68,20 @@ impl Worker {
         let (sender, wake) = (self.sender.clone(), Arc::clone(&self.wake));
         let (heard, told) = (Arc::new(AtomicU32::new(0)), Arc::clone(&self.wake));
         self.share = Arc::clone(&heard);
+        let begun = Instant::now();
+        let last = AtomicU32::new(0);
         let progress = Progress::new(move |share| {
             let percent = (share * 100.0) as u32;
-            if heard.swap(percent, Ordering::Relaxed) != percent {
+            // Each drawing of the window takes time from the work.
+            let now = begun.elapsed().as_millis() as u32;
+            if heard.swap(percent, Ordering::Relaxed) != percent
+                && now.saturating_sub(last.load(Ordering::Relaxed)) >= BETWEEN
+            {
+                last.store(now, Ordering::Relaxed);
                 told();
             }
         });
         self.running = Some(progress.clone());
-        let begun = Instant::now();
         let work = move |session: &Session| {
             // The window may already be closed.
             let tell = |event: Event| {
@@ -192,7 +201,7 @@ fn make(
 }
 
 /// Opens the recipe of a request, or a draft of it.
-fn open(session: &Session, request: &Request, coarser: u32) -> Result<World> {
+pub(super) fn open(session: &Session, request: &Request, coarser: u32) -> Result<World> {
     let mut recipe = request.recipe.draft(coarser);
     cover::prepare(&mut recipe, &request.coloring);
     list::prepare(&mut recipe, &request.layer, &LayerOptions::default())?;
@@ -238,14 +247,14 @@ fn paint(world: &World, request: &Request, quality: Quality, samples: Samples, p
     let Samples { heights, values, unit, kind, memory } = samples;
     let sea_level = world.recipe().world.sea_level;
     let shown = values.as_ref().unwrap_or(&heights);
-    let (albedo, legend, painter) = match request.coloring.is_cover() {
+    let (albedo, legend, painter, colors) = match request.coloring.is_cover() {
         true => {
-            let (albedo, legend) = cover::paint(world, &request.coloring, &heights, progress)?;
-            (albedo, legend, Painter::fit(&heights, sea_level))
+            let (albedo, legend) = cover::paint(world, &request.coloring, &heights, &heights, progress)?;
+            (albedo, legend, Painter::fit(&heights, sea_level), None)
         }
         false => {
             let colors = Colors::of(world.recipe(), &request.layer, kind, &request.coloring, shown);
-            (colors.paint(shown), colors.legend(shown), colors.painter(&heights, sea_level))
+            (colors.paint(shown), colors.legend(shown), colors.painter(&heights, sea_level), Some(colors))
         }
     };
     progress.check()?;
@@ -263,6 +272,8 @@ fn paint(world: &World, request: &Request, quality: Quality, samples: Samples, p
         unit,
         kind,
         statistics,
+        levels: levels(&heights),
+        colors,
         albedo,
         legend,
         shaded,
@@ -274,6 +285,14 @@ fn paint(world: &World, request: &Request, quality: Quality, samples: Samples, p
         heights,
         values,
     })
+}
+
+/// The lowest and the highest height; 0 if there is none.
+fn levels(heights: &Grid) -> [f32; 2] {
+    let finite = heights.data().iter().copied().filter(|height| height.is_finite());
+    let [low, high] =
+        finite.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], height| [low.min(height), high.max(height)]);
+    if low <= high { [low, high] } else { [0.0; 2] }
 }
 
 #[cfg(test)]

@@ -126,6 +126,12 @@ impl Camera {
         Vec3::new(libm::cosf(self.yaw), 0.0, -libm::sinf(self.yaw))
     }
 
+    /// The size of a pixel at a position, for a picture with this number of pixels in its height.
+    #[must_use]
+    pub fn pixel(&self, place: Vec3, height: f32) -> f32 {
+        2.0 * libm::tanf(FIELD / 2.0) * place.distance(self.position()) / height.max(1.0)
+    }
+
     /// The matrix from the view's space to clip space, for a picture with this ratio of width to height. Depths are
     /// reversed: 1 is near, 0 is far.
     #[must_use]

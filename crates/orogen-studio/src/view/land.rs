@@ -1,13 +1,18 @@
 //! The land of a picture as it stands in the 3D view.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use super::camera::Camera;
 use crate::preview::frame::Frame;
+use crate::preview::ring::Ring;
 
 /// The land of a picture in the space of the 3D view.
 pub struct Land<'a> {
     frame: &'a Frame,
+    /// The rings of detail, from coarse to fine.
+    rings: &'a [Arc<Ring>],
     /// Metres per unit of the view.
     unit: f64,
     /// Units of the view per metre of height.
@@ -22,15 +27,15 @@ pub struct Land<'a> {
 const STEPS: [u32; 2] = [640, 12];
 
 impl<'a> Land<'a> {
-    /// The land of a picture, with this vertical exaggeration, and this height at the center of the view.
+    /// The land of a picture and its rings, with this vertical exaggeration, and this height at the center of the view.
     #[must_use]
-    pub fn new(frame: &'a Frame, times: f64, middle: f32) -> Land<'a> {
+    pub fn new((frame, rings): (&'a Frame, &'a [Arc<Ring>]), times: f64, middle: f32) -> Land<'a> {
         let window = frame.window();
         let unit = Land::unit(frame);
         let half = |samples: usize| (samples.max(2) - 1) as f64 / 2.0;
         let center =
             [window.x as f64 + half(window.width), window.y as f64 + half(window.height)].map(|at| at * window.cell);
-        Land { frame, unit, up: (times / unit) as f32, middle, center }
+        Land { frame, rings, unit, up: (times / unit) as f32, middle, center }
     }
 
     /// Metres per unit of the view of a picture.
@@ -46,10 +51,15 @@ impl<'a> Land<'a> {
         [self.center[0] + f64::from(place.x) * self.unit, self.center[1] + f64::from(place.z) * self.unit]
     }
 
+    /// The height at a position in the world, of the finest ring there.
+    fn height(&self, at: [f64; 2]) -> Option<f32> {
+        self.rings.iter().rev().find_map(|ring| ring.height(at)).or_else(|| self.frame.at(at).map(|[_, height]| height))
+    }
+
     /// The point on the land at a position in the world; `None` beside the land.
     #[must_use]
     pub fn place(&self, at: [f64; 2]) -> Option<Vec3> {
-        let [_, height] = self.frame.at(at)?;
+        let height = self.height(at)?;
         let [east, south] = [0, 1].map(|k| ((at[k] - self.center[k]) / self.unit) as f32);
         height.is_finite().then(|| Vec3::new(east, (height - self.middle) * self.up, south))
     }
@@ -59,7 +69,7 @@ impl<'a> Land<'a> {
     pub fn hit(&self, camera: &Camera, at: [f32; 2], aspect: f32) -> Option<Vec3> {
         let [start, ray] = camera.ray(at, aspect);
         let below = |place: Vec3| {
-            let [_, height] = self.frame.at(self.world(place))?;
+            let height = self.height(self.world(place))?;
             Some(place.y <= (height - self.middle) * self.up)
         };
         // Steps are finer than the lattice near the camera, which is enough for a pointer.

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use orogen::Window;
+
 use super::command::Command;
 use super::purpose::Purpose;
 use crate::catalogue::Language;
@@ -50,6 +52,8 @@ pub enum Action {
     DropView(usize),
     /// Sets the number of samples along the longer side of the finest picture.
     Finest(usize),
+    /// Requests rings of detail with these windows; `None` cancels the work for them.
+    Refine(Option<Vec<Window>>),
     /// Selects the part of the world.
     Region(Region),
     /// Opens a preset.

@@ -39,6 +39,8 @@ pub mod realism_panel;
 pub mod recovery_dialog;
 pub mod relief;
 pub mod relief_panel;
+mod relief_part;
+mod relief_pipelines;
 pub mod restart;
 pub mod run;
 pub mod start_page;

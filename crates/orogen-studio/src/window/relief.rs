@@ -1,15 +1,21 @@
-//! The 3D view, drawn by the graphics card first into a separate picture with depths, and then into the window.
+//! The 3D view, drawn by the graphics card first into a separate picture with depths, and then into the window. The
+//! picture is drawn again only if something in it has changed.
 
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 use eframe::egui::PaintCallbackInfo;
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor, wgpu};
+use glam::Mat4;
 use orogen::gpu::render::LightShader;
+use orogen::{Grid, Window};
 use wgpu::util::DeviceExt as _;
 
-use super::mesh::{Mesh, Vertex};
+use super::mesh::{Mesh, Tile};
+use super::relief_part::{Place, places, visible};
+use super::relief_pipelines::Pipelines;
 use crate::preview::frame::{Frame, Key};
+use crate::preview::ring::Ring;
 
 /// The input of the shaders, like `Scene` in `relief.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -29,11 +35,17 @@ pub struct Scene {
     pub eye: [f32; 4],
 }
 
-const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// The formats of the picture.
+pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// The format of its colors.
+pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// Number of vertices along the longer side of the mesh: on a graphics card, and if a CPU draws.
-const VERTICES: [usize; 2] = [1024, 256];
+/// Maximum number of vertices along the longer side of a mesh: on a graphics card; if a CPU draws; and if a CPU draws
+/// while something moves.
+const VERTICES: [usize; 3] = [1024, 257, 129];
+
+/// Number of cells along the sides of a ring: on a graphics card, and if a CPU draws.
+const RING_CELLS: [usize; 2] = [512, 256];
 
 /// The abilities of an adapter at an acceptable speed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,12 +69,23 @@ impl Ability {
         }
     }
 
-    fn samples(self) -> u32 {
+    /// The number of samples per pixel.
+    #[must_use]
+    pub fn samples(self) -> u32 {
         if self.is_software { 1 } else { 4 }
     }
 
-    fn vertices(self) -> usize {
-        VERTICES[usize::from(self.is_software)]
+    /// The number of cells along the sides of a ring.
+    #[must_use]
+    pub fn ring_cells(self) -> usize {
+        RING_CELLS[usize::from(self.is_software)]
+    }
+
+    /// The numbers of vertices of the mesh of a window.
+    fn lattice(self, window: &Window, share: f32) -> [usize; 2] {
+        let most = VERTICES[if self.is_software { 1 + usize::from(share < 1.0) } else { 0 }];
+        let longest = window.width.max(window.height).max(2);
+        [window.width, window.height].map(|side| (side * most.min(longest)).div_ceil(longest).max(2))
     }
 }
 
@@ -71,6 +94,8 @@ impl Ability {
 pub struct Drawing {
     /// The land.
     pub frame: Arc<Frame>,
+    /// Parts of the land with finer samples, from coarse to fine.
+    pub rings: Vec<Arc<Ring>>,
     /// The camera and the land.
     pub scene: Scene,
     /// The light.
@@ -79,8 +104,40 @@ pub struct Drawing {
     pub has_wire: bool,
     /// The size of the picture in pixels.
     pub size: [u32; 2],
+    /// The share of the pixels along a side that are drawn.
+    pub share: f32,
     /// The abilities of the adapter.
     pub ability: Ability,
+}
+
+impl Drawing {
+    /// Whether another drawing is the same picture, at any resolution.
+    #[must_use]
+    pub fn is_same(&self, other: &Drawing) -> bool {
+        self.is_same_land(other)
+            && self.rings.len() == other.rings.len()
+            && self.rings.iter().zip(&other.rings).all(|(own, other)| Arc::ptr_eq(own, other))
+    }
+
+    /// Whether another drawing is the same picture except for rings of detail.
+    #[must_use]
+    pub fn is_same_land(&self, other: &Drawing) -> bool {
+        self.frame.key() == other.frame.key()
+            && self.scene == other.scene
+            && Arc::ptr_eq(&self.light, &other.light)
+            && self.has_wire == other.has_wire
+            && self.size == other.size
+            && self.ability == other.ability
+    }
+
+    /// The width and height of the drawn part in pixels.
+    fn drawn(&self) -> [f32; 2] {
+        self.size.map(|side| (side as f32 * self.share).round().max(1.0))
+    }
+
+    fn windows(&self) -> Vec<Window> {
+        std::iter::once(*self.frame.window()).chain(self.rings.iter().map(|ring| *ring.window())).collect()
+    }
 }
 
 impl CallbackTrait for Drawing {
@@ -96,8 +153,12 @@ impl CallbackTrait for Drawing {
             resources.insert(Relief::new(device, self.ability, &self.light));
         }
         if let Some(relief) = resources.get_mut::<Relief>() {
-            relief.load(device, queue, self);
-            relief.draw(queue, encoder, self);
+            let is_drawn = |last: &Drawing| last.is_same(self) && last.share >= self.share;
+            if !relief.drawing.as_ref().is_some_and(is_drawn) {
+                relief.load(device, queue, self);
+                relief.draw(queue, encoder, self);
+                relief.drawing = Some(self.clone());
+            }
         }
         Vec::new()
     }
@@ -106,18 +167,23 @@ impl CallbackTrait for Drawing {
         if let Some(relief) = resources.get::<Relief>()
             && let Some(target) = &relief.target
         {
-            pass.set_pipeline(&relief.blit);
+            pass.set_pipeline(&relief.pipelines.blit);
             pass.set_bind_group(0, &target.bind, &[]);
             pass.draw(0..3, 0..1);
         }
     }
 }
 
-/// The land on the graphics card.
-struct Land {
-    frame: Key,
-    bind: wgpu::BindGroup,
+/// The heights, colors and light of a part of the land on the graphics card.
+struct Samples {
+    identity: Identity,
+    views: [wgpu::TextureView; 3],
+    place: wgpu::Buffer,
 }
+
+/// The identity of a part: its picture and its window.
+#[derive(PartialEq)]
+struct Identity(Key, Window);
 
 /// The light on the graphics card.
 struct Light {
@@ -128,10 +194,13 @@ struct Light {
 /// A mesh on the graphics card.
 struct Buffers {
     lattice: [usize; 2],
+    tiles: Vec<Tile>,
     vertices: wgpu::Buffer,
-    ground: (wgpu::Buffer, u32),
+    ground: wgpu::Buffer,
+    lines: wgpu::Buffer,
+    walls: (wgpu::Buffer, u32),
     water: (wgpu::Buffer, u32),
-    lines: (wgpu::Buffer, u32),
+    water_walls: (wgpu::Buffer, u32),
 }
 
 /// The picture into which the land is drawn.
@@ -141,26 +210,25 @@ struct Target {
     /// The same picture with several samples per pixel, if they are used.
     many: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
+    /// The drawn part of the picture.
+    drawn: wgpu::Buffer,
     bind: wgpu::BindGroup,
 }
 
 /// All resources on the graphics card.
 struct Relief {
     ability: Ability,
-    ground: wgpu::RenderPipeline,
-    water: wgpu::RenderPipeline,
-    wire: wgpu::RenderPipeline,
-    behind: wgpu::RenderPipeline,
-    blit: wgpu::RenderPipeline,
+    pipelines: Pipelines,
     scene: wgpu::Buffer,
     sampler: wgpu::Sampler,
-    land_layout: wgpu::BindGroupLayout,
-    light_layout: wgpu::BindGroupLayout,
-    blit_layout: wgpu::BindGroupLayout,
-    land: Option<Land>,
+    /// The parts of the land, from coarse to fine.
+    parts: Vec<Samples>,
+    binds: Vec<wgpu::BindGroup>,
     light: Option<Light>,
-    buffers: Option<Buffers>,
+    meshes: Vec<Buffers>,
     target: Option<Target>,
+    /// What the picture shows.
+    drawing: Option<Drawing>,
 }
 
 /// A texture with a label, a size and a format.
@@ -184,214 +252,105 @@ fn filled(
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// The layout entry of a texture.
-fn texture(binding: u32, filterable: bool) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-        ty: wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable },
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        },
-        count: None,
-    }
-}
-
-/// The layout entry of a sampler.
-fn sampler(binding: u32) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-        count: None,
-    }
+/// An uninitialized uniform buffer.
+fn uniform(device: &wgpu::Device, label: &str, size: usize) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: size as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
 }
 
 impl Relief {
     fn new(device: &wgpu::Device, ability: Ability, light: &LightShader) -> Relief {
-        // The shader code is the same for all light.
-        let words = light.words.len().div_ceil(4);
-        let text = format!("const WORDS = {words}u;\n{}{}", light.text, include_str!("relief.wgsl"));
-        let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("relief"),
-            source: wgpu::ShaderSource::Wgsl(text.into()),
-        });
-        let uniform = |binding: u32| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        };
-        let land_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("land"),
-            entries: &[uniform(0), texture(1, false), texture(2, true), texture(3, true), sampler(4)],
-        });
-        let light_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("light"),
-            entries: &[uniform(0), texture(1, false)],
-        });
-        let blit_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("picture"),
-            entries: &[texture(0, true), sampler(1)],
-        });
-        let land_pipelines = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("land"),
-            bind_group_layouts: &[Some(&land_layout), Some(&light_layout)],
-            immediate_size: 0,
-        });
-        let blit_pipelines = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("picture"),
-            bind_group_layouts: &[Some(&blit_layout)],
-            immediate_size: 0,
-        });
-        let attributes = wgpu::vertex_attr_array![0 => Float32x4];
-        let vertices = [Some(wgpu::VertexBufferLayout {
-            array_stride: size_of::<Vertex>() as u64,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &attributes,
-        })];
-        let land = |vertex: &str, fragment: &str, topology: wgpu::PrimitiveTopology| {
-            // Lines are drawn over existing pixels. The background behind the land is drawn first, and hides nothing.
-            let blend = (fragment == "wire").then_some(wgpu::BlendState::ALPHA_BLENDING);
-            let hides = vertex == "corner" && blend.is_none();
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(fragment),
-                layout: Some(&land_pipelines),
-                vertex: wgpu::VertexState {
-                    module: &shader,
-                    entry_point: Some(vertex),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers: if vertex == "corner" { &vertices } else { &[] },
-                },
-                primitive: wgpu::PrimitiveState { topology, ..wgpu::PrimitiveState::default() },
-                depth_stencil: Some(wgpu::DepthStencilState {
-                    format: DEPTH,
-                    depth_write_enabled: Some(hides),
-                    depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
-                    stencil: wgpu::StencilState::default(),
-                    bias: wgpu::DepthBiasState::default(),
-                }),
-                multisample: wgpu::MultisampleState { count: ability.samples(), ..wgpu::MultisampleState::default() },
-                fragment: Some(wgpu::FragmentState {
-                    module: &shader,
-                    entry_point: Some(fragment),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &[Some(wgpu::ColorTargetState {
-                        format: COLOR,
-                        blend,
-                        write_mask: wgpu::ColorWrites::ALL,
-                    })],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        };
-        let blit = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("blit"),
-            layout: Some(&blit_pipelines),
-            vertex: wgpu::VertexState {
-                module: &shader,
-                entry_point: Some("covering"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &shader,
-                entry_point: Some("blit"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(ability.target.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        let triangles = wgpu::PrimitiveTopology::TriangleList;
         Relief {
             ability,
-            ground: land("corner", "ground", triangles),
-            water: land("corner", "water", triangles),
-            wire: land("corner", "wire", wgpu::PrimitiveTopology::LineList),
-            behind: land("covering", "behind", triangles),
-            blit,
-            scene: device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("scene"),
-                size: size_of::<Scene>() as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }),
+            pipelines: Pipelines::new(device, ability, light),
+            scene: uniform(device, "scene", size_of::<Scene>()),
             sampler: device.create_sampler(&wgpu::SamplerDescriptor {
                 mag_filter: wgpu::FilterMode::Linear,
                 min_filter: wgpu::FilterMode::Linear,
                 ..wgpu::SamplerDescriptor::default()
             }),
-            land_layout,
-            light_layout,
-            blit_layout,
-            land: None,
+            parts: Vec::new(),
+            binds: Vec::new(),
             light: None,
-            buffers: None,
+            meshes: Vec::new(),
             target: None,
+            drawing: None,
         }
     }
 
     /// Uploads changed data to the graphics card.
     fn load(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, drawing: &Drawing) {
-        let frame = &drawing.frame;
-        let window = frame.window();
-        let key = frame.key();
-        if self.land.as_ref().is_none_or(|land| land.frame != key) {
-            self.land = Some(Land { frame: key, bind: self.textures(device, queue, frame) });
-        }
+        self.load_parts(device, queue, drawing);
         if self.light.as_ref().is_none_or(|light| !Arc::ptr_eq(&light.shader, &drawing.light)) {
             let bind = self.light_bind(device, queue, &drawing.light);
             self.light = Some(Light { shader: Arc::clone(&drawing.light), bind });
         }
-        let longest = window.width.max(window.height).max(2);
-        let lattice = [window.width, window.height]
-            .map(|side| (side * self.ability.vertices().min(longest)).div_ceil(longest).max(2));
-        if self.buffers.as_ref().is_none_or(|buffers| buffers.lattice != lattice) {
-            self.buffers = Some(Buffers::new(device, lattice));
+        let lattices = drawing.windows().into_iter().flat_map(|window| {
+            // Those of pictures at rest are kept for the next one.
+            [1.0, drawing.share].map(|share| self.ability.lattice(&window, share))
+        });
+        let lattices: Vec<[usize; 2]> = lattices.collect();
+        self.meshes.retain(|mesh| lattices.contains(&mesh.lattice));
+        for lattice in lattices {
+            if self.meshes.iter().all(|mesh| mesh.lattice != lattice) {
+                self.meshes.push(Buffers::new(device, lattice));
+            }
         }
         if self.target.as_ref().is_none_or(|target| target.size != drawing.size) {
             self.target = Some(self.target(device, drawing.size));
         }
     }
 
-    fn textures(&self, device: &wgpu::Device, queue: &wgpu::Queue, frame: &Frame) -> wgpu::BindGroup {
-        // Samples without a height are at the base.
-        let low =
-            frame.heights.data().iter().copied().filter(|height| height.is_finite()).fold(f32::INFINITY, f32::min);
-        let low = if low.is_finite() { low } else { 0.0 };
-        let heights: Vec<f32> =
-            frame.heights.data().iter().map(|height| if height.is_finite() { *height } else { low }).collect();
-        let size = [frame.window().width, frame.window().height].map(|side| side as u32);
-        let view = |label: &str, format: wgpu::TextureFormat, bytes: &[u8]| {
-            filled(device, queue, (label, size, format), bytes)
-        };
-        let views = [
-            view("heights", wgpu::TextureFormat::R32Float, bytemuck::cast_slice(&heights)),
-            view("albedo", wgpu::TextureFormat::Rgba8UnormSrgb, &frame.albedo),
-            view("light", wgpu::TextureFormat::Rg8Unorm, &frame.light),
-        ];
+    /// Uploads the parts of the land that are new.
+    fn load_parts(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, drawing: &Drawing) {
+        let frame = &drawing.frame;
+        let land: (&Grid, &[u8], &[u8]) = (&frame.heights, &frame.albedo, &frame.light);
+        let rings = drawing.rings.iter().map(|ring| (&*ring.heights, &ring.albedo[..], &ring.light[..]));
+        let mut old = std::mem::take(&mut self.parts);
+        let before = old.len();
+        let (mut kept, mut is_same) = (0, true);
+        for (heights, albedo, light) in std::iter::once(land).chain(rings) {
+            let identity = Identity(frame.key(), *heights.window());
+            let known = old.iter().position(|part| part.identity == identity);
+            is_same &= known == Some(0);
+            kept += usize::from(known.is_some());
+            self.parts.push(match known {
+                Some(known) => old.remove(known),
+                None => Samples {
+                    views: textures(device, queue, (heights, albedo, light), frame.levels[0]),
+                    place: uniform(device, "place", size_of::<Place>()),
+                    identity,
+                },
+            });
+        }
+        if is_same && kept == before && before == self.parts.len() {
+            return;
+        }
         let entry = |binding: u32, resource| wgpu::BindGroupEntry { binding, resource };
-        device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("land"),
-            layout: &self.land_layout,
-            entries: &[
-                entry(0, self.scene.as_entire_binding()),
-                entry(1, wgpu::BindingResource::TextureView(&views[0])),
-                entry(2, wgpu::BindingResource::TextureView(&views[1])),
-                entry(3, wgpu::BindingResource::TextureView(&views[2])),
-                entry(4, wgpu::BindingResource::Sampler(&self.sampler)),
-            ],
-        })
+        let view = |binding: u32, view| entry(binding, wgpu::BindingResource::TextureView(view));
+        let bind = |k: usize| {
+            let (own, coarser) = (&self.parts[k], &self.parts[k.saturating_sub(1)]);
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("land"),
+                layout: &self.pipelines.land,
+                entries: &[
+                    entry(0, self.scene.as_entire_binding()),
+                    view(1, &own.views[0]),
+                    view(2, &own.views[1]),
+                    view(3, &own.views[2]),
+                    entry(4, wgpu::BindingResource::Sampler(&self.sampler)),
+                    entry(5, own.place.as_entire_binding()),
+                    view(6, &coarser.views[0]),
+                    view(7, &coarser.views[1]),
+                    view(8, &coarser.views[2]),
+                ],
+            })
+        };
+        self.binds = (0..self.parts.len()).map(bind).collect();
     }
 
     fn light_bind(&self, device: &wgpu::Device, queue: &wgpu::Queue, light: &LightShader) -> wgpu::BindGroup {
@@ -412,7 +371,7 @@ impl Relief {
         let tables = filled(device, queue, ("sky", size, format), bytemuck::cast_slice(&texels));
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("light"),
-            layout: &self.light_layout,
+            layout: &self.pipelines.light,
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: words.as_entire_binding() },
                 wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&tables) },
@@ -436,12 +395,14 @@ impl Relief {
         };
         let samples = self.ability.samples();
         let color = view(COLOR, 1, wgpu::TextureUsages::TEXTURE_BINDING);
+        let drawn = uniform(device, "drawn", size_of::<[f32; 4]>());
         let bind = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("picture"),
-            layout: &self.blit_layout,
+            layout: &self.pipelines.picture,
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&color) },
                 wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
+                wgpu::BindGroupEntry { binding: 2, resource: drawn.as_entire_binding() },
             ],
         });
         Target {
@@ -449,15 +410,28 @@ impl Relief {
             many: (samples > 1).then(|| view(COLOR, samples, wgpu::TextureUsages::empty())),
             depth: view(DEPTH, samples, wgpu::TextureUsages::empty()),
             color,
+            drawn,
             bind,
         }
     }
 
     /// Draws the land into the picture.
     fn draw(&self, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder, drawing: &Drawing) {
-        let (Some(land), Some(light)) = (&self.land, &self.light) else { return };
-        let (Some(buffers), Some(target)) = (&self.buffers, &self.target) else { return };
-        queue.write_buffer(&self.scene, 0, bytemuck::bytes_of(&drawing.scene));
+        let (Some(light), Some(target), Some(land)) = (&self.light, &self.target, self.binds.first()) else { return };
+        let scene = &drawing.scene;
+        let windows = drawing.windows();
+        let lattices: Vec<[usize; 2]> =
+            windows.iter().map(|window| self.ability.lattice(window, drawing.share)).collect();
+        let places = places(&windows, [scene.extent[0], scene.extent[1]], &lattices);
+        queue.write_buffer(&self.scene, 0, bytemuck::bytes_of(scene));
+        for (part, place) in self.parts.iter().zip(&places) {
+            queue.write_buffer(&part.place, 0, bytemuck::bytes_of(place));
+        }
+        let [width, height] = drawing.drawn();
+        let of_side = [width / target.size[0] as f32, height / target.size[1] as f32];
+        // Half a pixel inside, so that no color from outside of the part is mixed in.
+        let last = [(width - 0.5) / target.size[0] as f32, (height - 0.5) / target.size[1] as f32];
+        queue.write_buffer(&target.drawn, 0, bytemuck::bytes_of(&[of_side, last]));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("relief"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -475,24 +449,85 @@ impl Relief {
             occlusion_query_set: None,
             multiview_mask: None,
         });
-        pass.set_bind_group(0, &land.bind, &[]);
+        pass.set_viewport(0.0, 0.0, width, height, 0.0, 1.0);
         pass.set_bind_group(1, &light.bind, &[]);
-        pass.set_pipeline(&self.behind);
-        pass.draw(0..3, 0..1);
-        pass.set_vertex_buffer(0, buffers.vertices.slice(..));
-        let mut part = |pipeline: &wgpu::RenderPipeline, (indices, count): &(wgpu::Buffer, u32)| {
-            pass.set_pipeline(pipeline);
+        let matrix = Mat4::from_cols_array_2d(&scene.matrix);
+        let level = |metres: f32| (metres - scene.extent[3]) * scene.extent[2];
+        // A ring may be a little higher and lower than the land between its samples.
+        let [low, high] = drawing.frame.levels;
+        let spare = 0.1 * (high - low);
+        let levels = [level(low - spare), level(high + spare)];
+        let parts = || {
+            let mesh = |lattice: &[usize; 2]| self.meshes.iter().find(|mesh| mesh.lattice == *lattice);
+            self.binds
+                .iter()
+                .zip(&places)
+                .zip(lattices.iter().map(mesh))
+                .filter_map(|((bind, place), mesh)| Some((bind, place, mesh?)))
+        };
+        let all = |pass: &mut wgpu::RenderPass<'_>, (indices, count): &(wgpu::Buffer, u32)| {
             pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
             pass.draw_indexed(0..*count, 0, 0..1);
         };
-        part(&self.ground, &buffers.ground);
-        if drawing.has_wire {
-            part(&self.wire, &buffers.lines);
+        pass.set_pipeline(&self.pipelines.ground);
+        // The finest parts are usually in front.
+        for (nth, (bind, place, mesh)) in parts().enumerate().collect::<Vec<_>>().into_iter().rev() {
+            pass.set_bind_group(0, bind, &[]);
+            pass.set_vertex_buffer(0, mesh.vertices.slice(..));
+            pass.set_index_buffer(mesh.ground.slice(..), wgpu::IndexFormat::Uint32);
+            for range in visible(&mesh.tiles, place, levels, &matrix, |tile| tile.ground.clone()) {
+                pass.draw_indexed(range, 0, 0..1);
+            }
+            if nth == 0 {
+                all(&mut pass, &mesh.walls);
+            }
         }
-        if drawing.scene.water[1] > 0.0 {
-            part(&self.water, &buffers.water);
+        // The background is drawn only where there is no land.
+        pass.set_bind_group(0, land, &[]);
+        pass.set_pipeline(&self.pipelines.behind);
+        pass.draw(0..3, 0..1);
+        if drawing.has_wire {
+            pass.set_pipeline(&self.pipelines.wire);
+            for (bind, place, mesh) in parts() {
+                pass.set_bind_group(0, bind, &[]);
+                pass.set_vertex_buffer(0, mesh.vertices.slice(..));
+                pass.set_index_buffer(mesh.lines.slice(..), wgpu::IndexFormat::Uint32);
+                for range in visible(&mesh.tiles, place, levels, &matrix, |tile| tile.lines.clone()) {
+                    pass.draw_indexed(range, 0, 0..1);
+                }
+            }
+        }
+        if scene.water[1] > 0.0 {
+            pass.set_pipeline(&self.pipelines.water);
+            for (nth, (bind, _, mesh)) in parts().enumerate() {
+                pass.set_bind_group(0, bind, &[]);
+                pass.set_vertex_buffer(0, mesh.vertices.slice(..));
+                all(&mut pass, &mesh.water);
+                if nth == 0 {
+                    all(&mut pass, &mesh.water_walls);
+                }
+            }
         }
     }
+}
+
+/// Uploads heights, colors and light. Samples without a height are at the `lowest` one.
+fn textures(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    (heights, albedo, light): (&Grid, &[u8], &[u8]),
+    lowest: f32,
+) -> [wgpu::TextureView; 3] {
+    let finite: Vec<f32> =
+        heights.data().iter().map(|height| if height.is_finite() { *height } else { lowest }).collect();
+    let size = [heights.width(), heights.window().height].map(|side| side as u32);
+    let view =
+        |label: &str, format: wgpu::TextureFormat, bytes: &[u8]| filled(device, queue, (label, size, format), bytes);
+    [
+        view("heights", wgpu::TextureFormat::R32Float, bytemuck::cast_slice(&finite)),
+        view("albedo", wgpu::TextureFormat::Rgba8UnormSrgb, albedo),
+        view("light", wgpu::TextureFormat::Rg8Unorm, light),
+    ]
 }
 
 impl Buffers {
@@ -501,15 +536,18 @@ impl Buffers {
         let buffer = |label: &str, contents: &[u8], usage: wgpu::BufferUsages| {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
         };
-        let indices = |label: &str, indices: &[u32]| {
-            (buffer(label, bytemuck::cast_slice(indices), wgpu::BufferUsages::INDEX), indices.len() as u32)
-        };
+        let indices =
+            |label: &str, indices: &[u32]| buffer(label, bytemuck::cast_slice(indices), wgpu::BufferUsages::INDEX);
+        let counted = |label: &str, of: &[u32]| (indices(label, of), of.len() as u32);
         Buffers {
             lattice,
             vertices: buffer("vertices", bytemuck::cast_slice(&mesh.vertices), wgpu::BufferUsages::VERTEX),
             ground: indices("ground", &mesh.ground),
-            water: indices("water", &mesh.water),
             lines: indices("lines", &mesh.lines),
+            walls: counted("walls", &mesh.walls),
+            water: counted("water", &mesh.water),
+            water_walls: counted("water walls", &mesh.water_walls),
+            tiles: mesh.tiles,
         }
     }
 }

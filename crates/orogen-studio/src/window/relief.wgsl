@@ -1,4 +1,5 @@
-// The land in 3D: a mesh that reads its heights from a texture, with walls down to a base, and water.
+// The land in 3D: meshes that read their heights from textures, with walls down to a base, and water. The first mesh is
+// the whole land, the others are rings: squares with finer samples, each inside the one before.
 //
 // Its light is the light of rendered pictures, whose shader code precedes this one. There, z points up and y south.
 
@@ -14,11 +15,28 @@ struct Scene {
     eye: vec4f,
 }
 
+// The place of a part of the land.
+struct Part {
+    // West, north, width and depth in units.
+    rect: vec4f,
+    // The rectangle that a finer part covers: its first and last position.
+    hole: vec4f,
+    // The position in the coarser part: offset and scale.
+    coarser: vec4f,
+    // Number of vertices of the coarser part along its sides; the width of the border over which a ring turns into the
+    // coarser part, 0 for the whole land.
+    border: vec4f,
+}
+
 @group(0) @binding(0) var<uniform> scene: Scene;
 @group(0) @binding(1) var heights: texture_2d<f32>;
 @group(0) @binding(2) var albedo: texture_2d<f32>;
 @group(0) @binding(3) var light: texture_2d<f32>;
 @group(0) @binding(4) var linear_sampler: sampler;
+@group(0) @binding(5) var<uniform> part: Part;
+@group(0) @binding(6) var coarser_heights: texture_2d<f32>;
+@group(0) @binding(7) var coarser_albedo: texture_2d<f32>;
+@group(0) @binding(8) var coarser_light: texture_2d<f32>;
 @group(1) @binding(0) var<uniform> words: array<vec4u, WORDS>;
 @group(1) @binding(1) var tables: texture_2d<f32>;
 
@@ -32,19 +50,73 @@ fn triple_of(start: u32) -> vec3f {
     return textureLoad(tables, vec2u(at % columns, at / columns), 0).xyz;
 }
 
-fn texel(at: vec2i) -> f32 {
-    let last = vec2i(textureDimensions(heights)) - 1;
-    return textureLoad(heights, clamp(at, vec2i(0), last), 0).x;
+fn texel(grid: texture_2d<f32>, at: vec2i) -> f32 {
+    let last = vec2i(textureDimensions(grid)) - 1;
+    return textureLoad(grid, clamp(at, vec2i(0), last), 0).x;
 }
 
 // The height in metres at a position from 0, 0 to 1, 1, whose ends are the centers of the outer samples.
-fn height(uv: vec2f) -> f32 {
-    let at = uv * (vec2f(textureDimensions(heights)) - 1.0);
+fn height_in(grid: texture_2d<f32>, uv: vec2f) -> f32 {
+    let at = uv * (vec2f(textureDimensions(grid)) - 1.0);
     let first = vec2i(floor(at));
     let share = at - floor(at);
-    let above = mix(texel(first), texel(first + vec2i(1, 0)), share.x);
-    let below = mix(texel(first + vec2i(0, 1)), texel(first + vec2i(1, 1)), share.x);
+    let above = mix(texel(grid, first), texel(grid, first + vec2i(1, 0)), share.x);
+    let below = mix(texel(grid, first + vec2i(0, 1)), texel(grid, first + vec2i(1, 1)), share.x);
     return mix(above, below, share.y);
+}
+
+// The position in the coarser part.
+fn in_coarser(uv: vec2f) -> vec2f {
+    return part.coarser.xy + uv * part.coarser.zw;
+}
+
+// The share of the finer samples: 0 along the border of a ring, 1 inside.
+fn detail(uv: vec2f) -> f32 {
+    if part.border.z <= 0.0 {
+        return 1.0;
+    }
+    let inside = min(uv, 1.0 - uv) / part.border.zw;
+    return smoothstep(0.2, 1.0, min(inside.x, inside.y));
+}
+
+// The height in metres. At the border of a ring it is that of the coarser part.
+fn height(uv: vec2f) -> f32 {
+    let share = detail(uv);
+    if share >= 1.0 {
+        return height_in(heights, uv);
+    }
+    return mix(height_in(coarser_heights, in_coarser(uv)), height_in(heights, uv), share);
+}
+
+// The height at which the triangles of the coarser part are drawn.
+fn coarser_surface(uv: vec2f) -> f32 {
+    let cells = part.border.xy - 1.0;
+    let at = in_coarser(uv) * cells;
+    let first = floor(at);
+    let share = at - first;
+    let b = height_in(coarser_heights, (first + vec2f(1.0, 0.0)) / cells);
+    let c = height_in(coarser_heights, (first + vec2f(0.0, 1.0)) / cells);
+    if share.x + share.y <= 1.0 {
+        let a = height_in(coarser_heights, first / cells);
+        return a + (b - a) * share.x + (c - a) * share.y;
+    }
+    let d = height_in(coarser_heights, (first + 1.0) / cells);
+    return d + (c - d) * (1.0 - share.x) + (b - d) * (1.0 - share.y);
+}
+
+// The height of a vertex.
+fn surface(uv: vec2f) -> f32 {
+    let share = detail(uv);
+    let own = height_in(heights, uv);
+    if share >= 1.0 {
+        return own;
+    }
+    return mix(coarser_surface(uv), own, share);
+}
+
+// Whether a finer part covers a position.
+fn is_covered(uv: vec2f) -> bool {
+    return all(uv > part.hole.xy) && all(uv < part.hole.zw);
 }
 
 fn level(metres: f32) -> f32 {
@@ -63,7 +135,7 @@ struct Corner {
 fn corner(@location(0) vertex: vec4f) -> Corner {
     let uv = vertex.xy;
     let kind = u32(vertex.w + 0.5);
-    let ground = height(uv);
+    let ground = surface(uv);
     let lower = vertex.z > 0.5;
     var y = level(ground);
     if kind == 1u && lower {
@@ -73,7 +145,8 @@ fn corner(@location(0) vertex: vec4f) -> Corner {
     } else if kind == 3u && !lower {
         y = level(max(ground, scene.water.x));
     }
-    let place = vec3f((2.0 * uv.x - 1.0) * scene.extent.x, y, (2.0 * uv.y - 1.0) * scene.extent.y);
+    let xz = part.rect.xy + uv * part.rect.zw;
+    let place = vec3f(xz.x, y, xz.y);
     var out: Corner;
     out.clip = scene.matrix * vec4f(place, 1.0);
     out.uv = uv;
@@ -116,23 +189,52 @@ fn wall_light(albedo: vec3f, uv: vec2f, place: vec3f) -> vec3f {
 }
 
 // The texture coordinates of a position.
-fn sample_at(uv: vec2f) -> vec2f {
-    let step = 1.0 / (vec2f(textureDimensions(heights)) - 1.0);
+fn sample_at(grid: texture_2d<f32>, uv: vec2f) -> vec2f {
+    let step = 1.0 / (vec2f(textureDimensions(grid)) - 1.0);
     return uv * (1.0 - step) + 0.5 * step;
+}
+
+// The color of a texture at a position; at the border of a ring, that of the texture of the coarser part.
+fn blended(coarser: texture_2d<f32>, own: texture_2d<f32>, uv: vec2f, share: f32) -> vec4f {
+    let fine = textureSampleLevel(own, linear_sampler, sample_at(own, uv), 0.0);
+    if share >= 1.0 {
+        return fine;
+    }
+    return mix(textureSampleLevel(coarser, linear_sampler, sample_at(coarser, in_coarser(uv)), 0.0), fine, share);
 }
 
 // The share of the sun that reaches the ground or, with water, the surface of land and sea. Hills of the sea floor cast
 // no shadow on the water.
 fn sun_seen(uv: vec2f) -> f32 {
-    let seen = textureSample(light, linear_sampler, sample_at(uv)).rg;
+    let seen = blended(coarser_light, light, uv, detail(uv)).rg;
     return mix(1.0, select(seen.r, seen.g, scene.water.y > 0.0), scene.lines.w);
+}
+
+// The rise of the ground towards the east and south, in units per unit. `size` is that of the grid in units.
+fn rise_in(grid: texture_2d<f32>, uv: vec2f, size: vec2f) -> vec2f {
+    let cells = vec2f(textureDimensions(grid)) - 1.0;
+    let step = 1.0 / cells;
+    let east = height_in(grid, uv + vec2f(step.x, 0.0)) - height_in(grid, uv - vec2f(step.x, 0.0));
+    let south = height_in(grid, uv + vec2f(0.0, step.y)) - height_in(grid, uv - vec2f(0.0, step.y));
+    return vec2f(east, south) * scene.extent.z * cells / (2.0 * size);
+}
+
+// The normal of the ground, with z up.
+fn normal_of(uv: vec2f, share: f32) -> vec3f {
+    var rise = rise_in(heights, uv, part.rect.zw);
+    if share < 1.0 {
+        rise = mix(rise_in(coarser_heights, in_coarser(uv), part.rect.zw / part.coarser.zw), rise, share);
+    }
+    return normalize(vec3f(-rise, 1.0));
 }
 
 @fragment
 fn ground(in: Corner) -> @location(0) vec4f {
-    let seen = sun_seen(in.uv);
-    var color = PAPER * textureSample(albedo, linear_sampler, sample_at(in.uv)).rgb;
-    let step = 1.0 / (vec2f(textureDimensions(heights)) - 1.0);
+    if in.kind == 0u && is_covered(in.uv) {
+        discard;
+    }
+    let share = detail(in.uv);
+    var color = PAPER * blended(coarser_albedo, albedo, in.uv, share).rgb;
     if scene.lines.x > 0.0 {
         let at = height(in.uv) / scene.lines.x;
         let width = max(fwidth(at), 1e-6);
@@ -150,12 +252,9 @@ fn ground(in: Corner) -> @location(0) vec4f {
         let bands = 0.93 + 0.07 * sin(metres / max(scene.water.w, 1.0) * 16.0 + in.uv.x * 3.0 + in.uv.y * 2.0);
         return exposed(wall_light(vec3f(0.155, 0.125, 0.10) * bands, in.uv, in.place), in.place);
     }
-    let cell = vec2f(scene.extent.x, scene.extent.y) * 2.0 * step;
-    let east = (height(in.uv + vec2f(step.x, 0.0)) - height(in.uv - vec2f(step.x, 0.0))) * scene.extent.z;
-    let south = (height(in.uv + vec2f(0.0, step.y)) - height(in.uv - vec2f(0.0, step.y))) * scene.extent.z;
-    let normal = normalize(vec3f(-east / (2.0 * cell.x), -south / (2.0 * cell.y), 1.0));
+    let normal = normal_of(in.uv, share);
     let open = 0.5 + 0.5 * normal.z;
-    let sun = max(dot(normal, triple(SUN)), 0.0) * seen;
+    let sun = max(dot(normal, triple(SUN)), 0.0) * sun_seen(in.uv);
     return exposed(diffuse(color, sun, vec4f(triple(LEVEL_SKY) * open, open)), in.place);
 }
 
@@ -170,7 +269,7 @@ fn water(in: Corner) -> @location(0) vec4f {
         let below = scene.water.x - (in.place.y / scene.extent.z + scene.extent.w);
         return exposed(wall_light(water_section(max(below, 0.0)), in.uv, in.place), in.place);
     }
-    if depth <= 0.0 {
+    if depth <= 0.0 || is_covered(in.uv) {
         discard;
     }
     let along = along_to(in.place);
@@ -235,6 +334,9 @@ fn behind(in: Blit) -> @location(0) vec4f {
 
 @fragment
 fn wire(in: Corner) -> @location(0) vec4f {
+    if is_covered(in.uv) {
+        discard;
+    }
     return vec4f(0.0, 0.0, 0.0, 0.35);
 }
 
@@ -251,8 +353,10 @@ fn covering(@builtin(vertex_index) index: u32) -> Blit {
 
 @group(0) @binding(0) var picture: texture_2d<f32>;
 @group(0) @binding(1) var picture_sampler: sampler;
+// The drawn part of the picture, as a share of its sides, and the last position in it.
+@group(0) @binding(2) var<uniform> drawn: vec4f;
 
 @fragment
 fn blit(in: Blit) -> @location(0) vec4f {
-    return textureSample(picture, picture_sampler, in.uv);
+    return textureSample(picture, picture_sampler, min(in.uv * drawn.xy, drawn.zw));
 }

@@ -1,6 +1,7 @@
 //! The 3D view.
 
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use eframe::egui::{self, FontId, Key, PointerButton, Rect, Sense, Slider, Ui};
 use eframe::egui_wgpu::Callback;
@@ -13,12 +14,14 @@ use super::{legend, tool_row};
 use crate::catalogue::Language;
 use crate::preview::contours::suiting;
 use crate::preview::frame::{Frame, Quality};
+use crate::preview::ring::Ring;
 use crate::studio::Studio;
 use crate::view::camera::{Camera, Side};
 use crate::view::land::Land;
+use crate::view::pace::{Moves, Pace, REST};
+use crate::view::rings;
 
 /// State of the view.
-#[derive(Debug)]
 pub struct ReliefPanel {
     /// The camera.
     pub camera: Camera,
@@ -33,6 +36,14 @@ pub struct ReliefPanel {
     /// The sun while it is being moved; shadows are updated when it stops.
     sun: Option<[f64; 2]>,
     light: Light,
+    /// The resolution while something moves.
+    pace: Option<Pace>,
+    /// The last drawing.
+    last: Option<Drawing>,
+    /// The time of the interface at which the camera moved last.
+    turned: f64,
+    /// When the view was created.
+    opened: Instant,
     /// Kept cameras.
     pub views: Vec<[f32; 6]>,
 }
@@ -48,6 +59,10 @@ impl Default for ReliefPanel {
             has_wire: false,
             sun: None,
             light: Light::default(),
+            pace: None,
+            last: None,
+            turned: f64::NEG_INFINITY,
+            opened: Instant::now(),
             views: Vec::new(),
         }
     }
@@ -63,6 +78,13 @@ pub struct ShownView {
     /// The vertical exaggeration.
     pub exaggeration: f64,
 }
+
+/// The place of the picture that the rings of detail surround: a little below its middle, because what is closer needs
+/// more detail.
+const LOOKED_AT: [f32; 2] = [0.5, 0.6];
+
+/// The size on screen, in pixels, above which the cells of the ground are divided.
+const PIXELS_PER_CELL: f64 = 2.0;
 
 /// Speed of flying by keys, relative to the distance, per second.
 const FLIGHT: f32 = 0.9;
@@ -86,7 +108,8 @@ impl ReliefPanel {
             return;
         };
         let is_dragging = studio.frame.as_ref().is_some_and(|frame| {
-            let land = self.land(frame);
+            let rings = studio.rings();
+            let land = self.land(frame, &rings);
             tools.use_on(ui, &response, &self.projection(&land, rect), (studio, language), actions)
         });
         if !is_dragging {
@@ -102,26 +125,24 @@ impl ReliefPanel {
         self.settle(frame);
         let pixels = ui.pixels_per_point();
         let largest = ability.largest as f32;
-        // While something moves, a CPU draws fewer pixels.
-        let is_moving = response.dragged() || ui.input(|input| input.smooth_scroll_delta().y != 0.0);
-        let fewer = if ability.is_software && is_moving { 0.5 } else { 1.0 };
-        let size = [rect.width(), rect.height()].map(|side| (side * pixels * fewer).round().clamp(1.0, largest) as u32);
+        let size = [rect.width(), rect.height()].map(|side| (side * pixels).round().clamp(1.0, largest) as u32);
         let sun = self.sun.unwrap_or(studio.look.sun);
         let drawing = Drawing {
             frame: Arc::clone(frame),
+            rings: studio.rings(),
             scene: self.scene(frame, studio, rect.width() / rect.height().max(1.0)),
             light: self.light.of(studio, ui.ctx(), sun, self.block(frame)),
             has_wire: self.has_wire,
             size,
+            share: 1.0,
             ability,
         };
+        let drawing = self.paced(ui, drawing);
+        self.refine(ui, studio, rect, &drawing, actions);
         painter.add(Callback::new_paint_callback(rect, drawing));
         legend::draw(&painter, rect.min + egui::vec2(10.0, 10.0), frame, language);
-        if fewer < 1.0 {
-            // The full picture is drawn once the movement stops.
-            ui.ctx().request_repaint();
-        }
-        let land = self.land(frame);
+        let rings = studio.rings();
+        let land = self.land(frame, &rings);
         tools.draw(ui, &response, &self.projection(&land, rect), (studio, frame), language);
         let aspect = rect.width() / rect.height().max(1.0);
         let place_at = |at: egui::Pos2| land.hit(&self.camera, share(at, rect), aspect);
@@ -139,6 +160,60 @@ impl ReliefPanel {
         }
         if let Some(place) = aimed {
             self.camera.target = place;
+        }
+    }
+
+    /// The drawing at the resolution that the time of a frame allows: all pixels at rest.
+    fn paced(&mut self, ui: &Ui, drawing: Drawing) -> Drawing {
+        let last = self.last.as_ref();
+        let is_new_fine =
+            last.is_none_or(|last| last.frame.key() != drawing.frame.key()) && drawing.frame.quality == Quality::Fine;
+        let moves = Moves {
+            camera: last
+                .is_some_and(|last| last.scene.eye != drawing.scene.eye || last.scene.matrix != drawing.scene.matrix),
+            // The finest picture is the last one for now.
+            picture: last.is_none_or(|last| !last.is_same_land(&drawing)) && !is_new_fine,
+            is_held: ui.input(|input| input.pointer.any_down()),
+        };
+        let pace = self.pace.get_or_insert_with(|| Pace::new(drawing.ability.is_software));
+        let time = ui.input(|input| input.time);
+        let share = pace.share(moves, time, self.opened.elapsed().as_secs_f64());
+        if moves.camera {
+            self.turned = time;
+        }
+        if time - self.turned < REST {
+            // The time of a frame is only known if the next one follows at once.
+            ui.ctx().request_repaint();
+        } else if share < 1.0 || pace.is_moving(time) {
+            ui.ctx().request_repaint_after(Duration::from_secs_f64(REST));
+        }
+        let drawing = Drawing { share, ..drawing };
+        self.last = Some(drawing.clone());
+        drawing
+    }
+
+    /// Requests rings of detail around the place that the camera looks at, once it is at rest.
+    fn refine(&self, ui: &Ui, studio: &Studio, rect: Rect, drawing: &Drawing, actions: &mut Vec<Action>) {
+        let time = ui.input(|input| input.time);
+        if time - self.turned < REST {
+            if studio.is_refining() {
+                actions.push(Action::Refine(None));
+            }
+            return;
+        }
+        if !studio.is_done() {
+            return;
+        }
+        let frame = &drawing.frame;
+        let land = self.land(frame, &[]);
+        let seen = land.hit(&self.camera, LOOKED_AT, rect.width() / rect.height().max(1.0));
+        let windows = seen.map_or_else(Vec::new, |place| {
+            let pixel = self.camera.pixel(place, drawing.size[1] as f32);
+            let cell = f64::from(pixel) * Land::unit(frame) * PIXELS_PER_CELL;
+            rings::around(frame.window(), land.world(place), cell, drawing.ability.ring_cells())
+        });
+        if studio.refining() != Some(&windows) {
+            actions.push(Action::Refine(Some(windows)));
         }
     }
 
@@ -301,10 +376,8 @@ impl ReliefPanel {
 
     /// The lowest and highest height, and the height at the center of the view.
     fn levels(frame: &Frame) -> [f32; 3] {
-        let finite = frame.heights.data().iter().copied().filter(|height| height.is_finite());
-        let (low, high) =
-            finite.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), height| (low.min(height), high.max(height)));
-        if low <= high { [low, high, (low + high) / 2.0] } else { [0.0; 3] }
+        let [low, high] = frame.levels;
+        [low, high, (low + high) / 2.0]
     }
 
     /// The land as input of the light.
@@ -343,10 +416,10 @@ impl ReliefPanel {
         }
     }
 
-    /// The land as it stands in the view.
-    fn land<'a>(&self, frame: &'a Frame) -> Land<'a> {
+    /// The land as it stands in the view, with the heights of the finest ring at each place.
+    fn land<'a>(&self, frame: &'a Frame, rings: &'a [Arc<Ring>]) -> Land<'a> {
         let [_, _, middle] = Self::levels(frame);
-        Land::new(frame, self.times(Some(frame)), middle)
+        Land::new((frame, rings), self.times(Some(frame)), middle)
     }
 
     /// Where the view shows positions of the world.
