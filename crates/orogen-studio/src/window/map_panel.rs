@@ -9,7 +9,7 @@ use eframe::egui::{
 
 use super::action::Action;
 use super::contour_lines::ContourLines;
-use super::label::label;
+use super::label::{draft, label};
 use super::relief_panel::{contours, readout};
 use super::tools::{Projection, Tools};
 use super::{legend, tool_row};
@@ -129,6 +129,7 @@ impl MapPanel {
             label(&painter, rect.left_bottom() + Vec2::new(8.0, -8.0), Align2::LEFT_BOTTOM, &text);
         }
         scale_bar(&painter, rect, &view);
+        draft(&painter, rect, frame, language);
         legend::draw(
             &painter,
             rect.min + Vec2::new(10.0, if self.kept.is_some() { 40.0 } else { 10.0 }),

@@ -7,6 +7,7 @@ use eframe::egui::{self, FontId, Key, PointerButton, Rect, Sense, Slider, Ui};
 use eframe::egui_wgpu::Callback;
 
 use super::action::Action;
+use super::label::draft;
 use super::light::{Block, Light};
 use super::relief::{Ability, Drawing, Scene};
 use super::tools::{Projection, Tools};
@@ -141,6 +142,7 @@ impl ReliefPanel {
         self.refine(ui, studio, rect, &drawing, actions);
         painter.add(Callback::new_paint_callback(rect, drawing));
         legend::draw(&painter, rect.min + egui::vec2(10.0, 10.0), frame, language);
+        draft(&painter, rect, frame, language);
         let rings = studio.rings();
         let land = self.land(frame, &rings);
         tools.draw(ui, &response, &self.projection(&land, rect), (studio, frame), language);
