@@ -169,6 +169,29 @@ pub fn working_folder() -> PathBuf {
     std::env::current_dir().unwrap_or_default()
 }
 
+/// Whether the system has dialogs for choosing files. On Linux that is a desktop portal that has such a dialog.
+#[must_use]
+pub fn has_file_dialogs() -> bool {
+    static HAS: std::sync::OnceLock<bool> = std::sync::OnceLock::new();
+    *HAS.get_or_init(find_file_dialogs)
+}
+
+fn find_file_dialogs() -> bool {
+    if cfg!(any(windows, target_os = "macos")) {
+        return true;
+    }
+    let var = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
+    let dirs = var("XDG_DATA_DIRS").unwrap_or_else(|| "/usr/local/share:/usr/share".into());
+    let folders: Vec<PathBuf> = std::env::split_paths(&dirs).collect();
+    let starts = |folder: &PathBuf| folder.join("dbus-1/services/org.freedesktop.portal.Desktop.service").is_file();
+    let has_dialog = |folder: &PathBuf| {
+        let portals = std::fs::read_dir(folder.join("xdg-desktop-portal/portals")).into_iter().flatten().flatten();
+        let mut texts = portals.filter_map(|portal| std::fs::read_to_string(portal.path()).ok());
+        texts.any(|text| text.contains("org.freedesktop.impl.portal.FileChooser"))
+    };
+    var("DBUS_SESSION_BUS_ADDRESS").is_some() && folders.iter().any(starts) && folders.iter().any(has_dialog)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

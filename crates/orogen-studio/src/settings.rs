@@ -46,6 +46,8 @@ pub struct Settings {
     pub views: Vec<[f32; 6]>,
     /// Whether nodes of the graph show small pictures.
     pub thumbnails: bool,
+    /// Whether files are chosen in dialogs of the system, if it has any.
+    pub has_system_dialogs: bool,
     /// The layout of the window.
     pub layout: Layout,
 }
@@ -64,6 +66,7 @@ impl Default for Settings {
             memory: MEMORY,
             views: Vec::new(),
             thumbnails: true,
+            has_system_dialogs: true,
             layout: Layout::default(),
         }
     }

@@ -39,7 +39,13 @@ use orogen_studio::window::app::{App, Start};
 
 /// A window with a recipe, a preset, or the start page.
 fn window(folder: &TestFolder, document: Option<&str>, language: Language) -> Harness<'static, App> {
-    let settings = Settings { language: Some(language), theme: Theme::Dark, ..Settings::default() };
+    let settings = Settings {
+        language: Some(language),
+        theme: Theme::Dark,
+        // The tests type into the studio's own dialogs.
+        has_system_dialogs: false,
+        ..Settings::default()
+    };
     let folder = folder.to_path_buf();
     let document = document.map(|name| open(Path::new(name)).unwrap());
     let mut harness =

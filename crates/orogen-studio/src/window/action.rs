@@ -66,6 +66,8 @@ pub enum Action {
     DropUnsaved(Unsaved),
     /// Saves the document to a file.
     Save(PathBuf),
+    /// Sets whether files are chosen in dialogs of the system.
+    SystemDialogs(bool),
     /// Sets the layout of the window.
     Layout(Layout),
     /// Sets the language of the interface.

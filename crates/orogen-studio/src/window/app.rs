@@ -17,10 +17,12 @@ use super::dialogs::{self, Decision, FileDialog};
 use super::export_dialog::ExportDialog;
 use super::open_dialogs::OpenDialogs;
 use super::panels::{Panels, Shown};
+use super::purpose::Purpose;
 use super::ramp_editor::RampEditor;
 use super::recovery_dialog::{self, RecoveryDialog};
 use super::relief::Ability;
 use super::relief_panel::ShownView;
+use super::system_dialog::SystemDialog;
 use super::{fonts, menu, theme};
 use crate::catalogue::Language;
 use crate::editing::document::Document;
@@ -303,6 +305,10 @@ impl App {
                 theme::set(context, theme);
                 self.remember();
             }
+            Action::SystemDialogs(are_used) => {
+                self.settings.has_system_dialogs = are_used;
+                self.remember();
+            }
             // It is remembered with what is remembered next, and when the window closes.
             Action::Layout(layout) => self.settings.layout = layout,
             Action::KeepView(view) => {
@@ -335,7 +341,7 @@ impl App {
             }
             Action::Choose(purpose) => {
                 let name = self.dialogs.ramp.as_ref().map(|ramp| PathBuf::from(ramp.file_name()));
-                self.dialogs.files = Some(FileDialog::new(purpose, name.as_deref()));
+                self.choose_file(purpose, name.as_deref());
             }
             Action::GoToLine(line) => {
                 self.show_below(Below::Text);
@@ -362,6 +368,18 @@ impl App {
                     _ => {}
                 }
             }
+        }
+    }
+
+    /// Opens a dialog for choosing a file that starts at a path: that of the system, or else an own one.
+    fn choose_file(&mut self, purpose: Purpose, at: Option<&Path>) {
+        if self.dialogs.is_choosing() {
+            return;
+        }
+        let system = || SystemDialog::open(purpose, at, self.language, &self.wake);
+        self.dialogs.system = self.settings.has_system_dialogs.then(system).flatten();
+        if self.dialogs.system.is_none() {
+            self.dialogs.files = Some(FileDialog::new(purpose, at));
         }
     }
 
@@ -507,7 +525,7 @@ impl eframe::App for App {
         for action in actions {
             self.act(action, &context);
         }
-        if self.dialogs.files.is_none() {
+        if !self.dialogs.is_choosing() {
             // The dialog was closed without a name.
             self.after_save = None;
         }

@@ -51,6 +51,12 @@ impl FileDialog {
         dialog
     }
 
+    /// The dialog with the question whether an existing file may be replaced.
+    #[must_use]
+    pub fn asking(purpose: Purpose, path: &Path) -> FileDialog {
+        FileDialog { asks: Overwrite::of(path), ..FileDialog::new(purpose, Some(path)) }
+    }
+
     fn look(&mut self) {
         match files::list(&self.folder) {
             Ok(entries) => {
@@ -79,7 +85,7 @@ impl FileDialog {
         if let Some(asks) = &self.asks {
             match asks.show(context, language) {
                 Some(true) => {
-                    actions.push(self.action(asks.path.clone()));
+                    actions.push(self.purpose.action(asks.path.clone()));
                     return false;
                 }
                 Some(false) => self.asks = None,
@@ -141,32 +147,21 @@ impl FileDialog {
                 }
             });
         });
-        if let Some(mut path) = chosen {
+        if let Some(path) = chosen {
             if path.is_dir() && path.extension().is_none() {
                 self.enter(path);
                 return true;
             }
-            if self.purpose.saves() && path.extension().is_none() {
-                path.set_extension("toml");
-            }
+            let path = self.purpose.completed(path);
             if self.purpose.saves() && self.own.as_ref() != Some(&path) {
                 self.asks = Overwrite::of(&path);
             }
             if self.asks.is_none() {
-                actions.push(self.action(path));
+                actions.push(self.purpose.action(path));
                 return false;
             }
         }
         is_open && !context.input(|input| input.key_pressed(Key::Escape))
-    }
-
-    fn action(&self, path: PathBuf) -> Action {
-        match self.purpose {
-            Purpose::Open => Action::Open(path),
-            Purpose::Save => Action::Save(path),
-            Purpose::OpenPalette => Action::OpenPalette(path),
-            Purpose::SavePalette => Action::SavePalette(path),
-        }
     }
 
     /// The button for a new folder, and the field for its name.

@@ -7,6 +7,7 @@ use super::action::Action;
 use super::command::{self, Command, Menu};
 use super::swatches;
 use crate::catalogue::Language;
+use crate::files;
 use crate::preview::coloring::Coloring;
 use crate::settings::layout::View;
 use crate::settings::{Settings, Theme};
@@ -139,6 +140,13 @@ fn preferences(ui: &mut Ui, settings: &Settings, language: Language, actions: &m
             }
         }
     });
+    if files::has_file_dialogs() {
+        let are_used = settings.has_system_dialogs;
+        if ui.add(egui::Button::selectable(are_used, language.text("menu.system_dialogs"))).clicked() {
+            actions.push(Action::SystemDialogs(!are_used));
+            ui.close();
+        }
+    }
 }
 
 /// Controls for the shown layer and its palette.

@@ -46,6 +46,7 @@ pub mod run;
 pub mod start_page;
 pub mod status;
 pub mod swatches;
+pub mod system_dialog;
 pub mod text_panel;
 pub mod theme;
 pub mod tool_row;

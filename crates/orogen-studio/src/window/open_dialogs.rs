@@ -8,6 +8,7 @@ use super::export_dialog::ExportDialog;
 use super::ramp_editor::RampEditor;
 use super::recovery_dialog::RecoveryDialog;
 use super::relief_panel::ShownView;
+use super::system_dialog::SystemDialog;
 use super::tour::Tour;
 use crate::catalogue::Language;
 use crate::preview::worker::Wake;
@@ -18,6 +19,8 @@ use crate::studio::Studio;
 pub struct OpenDialogs {
     /// The dialog for choosing a file.
     pub files: Option<FileDialog>,
+    /// The dialog of the system for choosing a file.
+    pub system: Option<SystemDialog>,
     /// The editor for the colors of the view.
     pub ramp: Option<RampEditor>,
     /// The export dialog.
@@ -46,6 +49,7 @@ impl OpenDialogs {
     ) {
         let studio = shown.map(|(studio, _)| studio);
         self.recovery.take_if(|recovery| !recovery.show(context, language, actions));
+        self.end_system(actions);
         self.files.take_if(|files| !files.show(context, language, actions));
         self.ramp.take_if(|ramp| studio.is_none() || !ramp.show(context, language, actions));
         if let Some(shown) = shown {
@@ -57,5 +61,27 @@ impl OpenDialogs {
             self.has_shortcuts = dialogs::shortcuts(context, language);
         }
         self.message.take_if(|(title, text)| !dialogs::message(context, title, text));
+    }
+
+    /// Whether a file is being chosen.
+    #[must_use]
+    pub fn is_choosing(&self) -> bool {
+        self.files.is_some() || self.system.is_some()
+    }
+
+    /// Takes what was chosen in the dialog of the system.
+    fn end_system(&mut self, actions: &mut Vec<Action>) {
+        let Some((purpose, end)) = self.system.as_ref().and_then(|system| Some((system.purpose(), system.end()?)))
+        else {
+            return;
+        };
+        self.system = None;
+        let Some(path) = end else { return };
+        let completed = purpose.completed(path.clone());
+        // The system asked about the name that was typed, not about the one with an extension.
+        match completed != path && completed.exists() {
+            true => self.files = Some(FileDialog::asking(purpose, &completed)),
+            false => actions.push(purpose.action(completed)),
+        }
     }
 }

@@ -1,5 +1,9 @@
 //! The purpose of choosing a file.
 
+use std::path::PathBuf;
+
+use super::action::Action;
+
 /// The purpose of choosing a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
@@ -22,6 +26,33 @@ impl Purpose {
             Purpose::Save => "command.save_as",
             Purpose::OpenPalette => "colors.open",
             Purpose::SavePalette => "colors.save",
+        }
+    }
+
+    /// The catalog key of the name of its files.
+    #[must_use]
+    pub fn files(self) -> &'static str {
+        match self {
+            Purpose::Open => "file.lands",
+            Purpose::Save => "file.recipes",
+            Purpose::OpenPalette | Purpose::SavePalette => "file.palettes",
+        }
+    }
+
+    /// The path of a chosen file: a new file without an extension gets the usual one.
+    #[must_use]
+    pub fn completed(self, path: PathBuf) -> PathBuf {
+        if self.saves() && path.extension().is_none() { path.with_extension("toml") } else { path }
+    }
+
+    /// The action for a chosen file.
+    #[must_use]
+    pub fn action(self, path: PathBuf) -> Action {
+        match self {
+            Purpose::Open => Action::Open(path),
+            Purpose::Save => Action::Save(path),
+            Purpose::OpenPalette => Action::OpenPalette(path),
+            Purpose::SavePalette => Action::SavePalette(path),
         }
     }
 

@@ -10,7 +10,7 @@ use crate::editing::groups;
 use crate::files;
 use crate::settings::layout::{Below, View};
 use crate::window::command::Command;
-use crate::window::dialogs::{CommandPalette, FileDialog};
+use crate::window::dialogs::CommandPalette;
 use crate::window::export_dialog::ExportDialog;
 use crate::window::menu;
 use crate::window::purpose::Purpose;
@@ -26,8 +26,8 @@ impl App {
             Command::New => self.leave(Pending::StartPage, context),
             Command::Empty => self.leave(Pending::Empty, context),
             Command::Open => {
-                let at = self.studio.as_ref().and_then(|studio| studio.document.path());
-                self.dialogs.files = Some(FileDialog::new(Purpose::Open, at));
+                let at = self.studio.as_ref().and_then(|studio| studio.document.path()).map(Path::to_path_buf);
+                self.choose_file(Purpose::Open, at.as_deref());
             }
             Command::Quit => self.leave(Pending::Quit, context),
             Command::CommandPalette => self.dialogs.palette = Some(CommandPalette::default()),
@@ -148,6 +148,7 @@ impl App {
     pub(super) fn save_as(&mut self) {
         let Some(studio) = &self.studio else { return };
         let name = PathBuf::from(format!("{}.toml", studio.document.title()));
-        self.dialogs.files = Some(FileDialog::new(Purpose::Save, studio.document.path().or(Some(&name))));
+        let at = studio.document.path().map_or(name, Path::to_path_buf);
+        self.choose_file(Purpose::Save, Some(&at));
     }
 }
