@@ -8,6 +8,7 @@ pub mod detail;
 pub mod failure;
 pub mod frame;
 pub mod legend;
+pub mod op_pictures;
 pub mod picture;
 pub mod ramp;
 pub mod region;

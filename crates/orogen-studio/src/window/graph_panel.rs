@@ -12,7 +12,7 @@ use orogen::declare::Input;
 use super::action::Action;
 use super::command::Command;
 use super::graph_box::{self, Shown, WIDTH};
-use super::graph_search::{Found, Search};
+use super::graph_search::{Found, OpTextures, Search};
 use crate::catalogue::Language;
 use crate::editing::adding::After;
 use crate::editing::brush::Effect;
@@ -39,6 +39,8 @@ pub struct Graph {
     pub(super) placed: Option<(u64, String, bool)>,
     /// The search for a new node.
     search: Option<Search>,
+    /// The pictures of ops, once the search was open.
+    ops: Option<OpTextures>,
     /// The node from which a wire is being drawn.
     wire: Option<String>,
     /// The wire that was chosen, by what reads through it.
@@ -68,6 +70,7 @@ impl Default for Graph {
             places: HashMap::new(),
             placed: None,
             search: None,
+            ops: None,
             wire: None,
             chosen: None,
             rectangle: None,
@@ -79,6 +82,11 @@ impl Default for Graph {
 }
 
 impl Graph {
+    /// Drops the state of the previous document.
+    pub fn reset(&mut self) {
+        *self = Graph { ops: self.ops.take(), ..Graph::default() };
+    }
+
     /// Opens the search for a new node.
     pub fn open_search(&mut self) {
         self.search = Some(Search::new(self.to_graph(pos2(80.0, 60.0))));
@@ -208,6 +216,8 @@ impl Graph {
                 }
             }
         }
+        // Pictures of nodes that are gone would stay on the graphics card.
+        textures.retain(|node, _| studio.thumbnails.of(node).is_some());
         self.textures = textures;
     }
 
@@ -443,7 +453,9 @@ impl Graph {
     fn find(&mut self, ui: &Ui, rect: Rect, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
         let Some(mut search) = self.search.take() else { return };
         let place = rect.min + self.offset + search.at.to_vec2() * self.zoom;
-        let op = match search.show(ui, rect, place, language) {
+        let ops = self.ops.get_or_insert_with(|| OpTextures::new(ui.ctx()));
+        ops.update(&studio.session());
+        let op = match search.show(ui, (rect, place), ops, language) {
             Found::Nothing => {
                 self.search = Some(search);
                 return;

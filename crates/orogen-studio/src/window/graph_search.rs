@@ -2,23 +2,64 @@
 
 use std::cmp::Reverse;
 use std::collections::HashMap;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use eframe::egui::text::{LayoutJob, TextFormat};
-use eframe::egui::{self, CollapsingHeader, FontId, Key, Pos2, Rect, TextEdit, Ui, vec2};
+use eframe::egui::{
+    self, Button, CollapsingHeader, ColorImage, Context, FontId, Image, Key, Pos2, Rect, TextEdit, TextureHandle,
+    TextureId, TextureOptions, Ui, Vec2, WidgetText, vec2,
+};
+use orogen::Session;
 use orogen::node::Node;
 use orogen::presets;
 
 use super::op_groups;
 use crate::catalogue::Language;
+use crate::preview::op_pictures::OpPictures;
 
 /// The size of the list, and the number of letters of a description on one of its lines.
 const WIDTH: f32 = 380.0;
 const HEIGHT: f32 = 400.0;
-const LETTERS: usize = 62;
+const LETTERS: usize = 55;
+
+/// The side of the picture of an op.
+const PICTURE: f32 = 36.0;
 
 /// Number of ops that are listed before the groups: those that presets use most.
 const COMMON: usize = 4;
+
+/// Small pictures of the ops on the graphics card.
+pub struct OpTextures {
+    pictures: OpPictures,
+    textures: HashMap<String, TextureHandle>,
+}
+
+impl OpTextures {
+    /// No pictures yet; they wake the window of the context.
+    #[must_use]
+    pub fn new(context: &Context) -> OpTextures {
+        let context = context.clone();
+        let wake = Arc::new(move || context.request_repaint());
+        OpTextures { pictures: OpPictures::new(wake), textures: HashMap::new() }
+    }
+
+    /// Makes the pictures, at the first call, and takes those that are made.
+    pub fn update(&mut self, session: &Session) {
+        self.pictures.update(session);
+    }
+
+    fn of(&mut self, context: &Context, op: &str) -> Option<TextureId> {
+        if let Some(texture) = self.textures.get(op) {
+            return Some(texture.id());
+        }
+        let picture = self.pictures.of(op)?;
+        let image = ColorImage::from_rgba_unmultiplied(picture.size, &picture.pixels);
+        let texture = context.load_texture(format!("op {op}"), image, TextureOptions::LINEAR);
+        let id = texture.id();
+        self.textures.insert(op.to_owned(), texture);
+        Some(id)
+    }
+}
 
 /// A search, and the position of the new node.
 #[derive(Debug, Default)]
@@ -48,7 +89,13 @@ impl Search {
     }
 
     /// Shows the search at a position of the screen.
-    pub fn show(&mut self, ui: &Ui, rect: Rect, place: Pos2, language: Language) -> Found {
+    pub fn show(
+        &mut self,
+        ui: &Ui,
+        (rect, place): (Rect, Pos2),
+        pictures: &mut OpTextures,
+        language: Language,
+    ) -> Found {
         let mut chosen = Found::Nothing;
         let mut is_open = true;
         let place = place.clamp(rect.min, (rect.max - vec2(WIDTH + 10.0, 200.0)).max(rect.min));
@@ -75,7 +122,7 @@ impl Search {
                 egui::ScrollArea::vertical().max_height(HEIGHT).auto_shrink([false, true]).show(ui, |ui| {
                     let mut list = |ui: &mut Ui, ops: &[&'static str]| {
                         for op in ops {
-                            if op_entry(ui, op, language) {
+                            if op_entry(ui, op, pictures, language) {
                                 chosen = Found::Op(op);
                             }
                         }
@@ -98,10 +145,15 @@ impl Search {
 }
 
 /// An entry for an op; whether it was clicked.
-fn op_entry(ui: &mut Ui, op: &str, language: Language) -> bool {
+fn op_entry(ui: &mut Ui, op: &str, pictures: &mut OpTextures, language: Language) -> bool {
     let Some(node) = Node::named(op) else { return false };
     let about = language.told_shortly(node.spec().doc);
-    let entry = ui.selectable_label(false, entry(ui, op, &about, language));
+    let words = WidgetText::from(entry(ui, op, &about, language));
+    let side = Vec2::splat(PICTURE);
+    let entry = match pictures.of(ui.ctx(), op) {
+        Some(picture) => ui.add(Button::selectable(false, (Image::new((picture, side)), words))),
+        None => ui.add(Button::selectable(false, words).min_size(vec2(0.0, PICTURE))),
+    };
     entry.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, op));
     entry.on_hover_text(about).clicked()
 }

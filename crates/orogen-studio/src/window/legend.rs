@@ -15,8 +15,8 @@ const LINE: f32 = 16.0;
 /// The space below a legend, for the value at the pointer.
 const BELOW: f32 = 36.0;
 
-/// Draws the legend of a picture with its upper left corner at `at`. In a low view it is smaller, and without room it is
-/// left out.
+/// Draws the legend of a picture with its upper left corner at `at`. In a low view it is smaller, and without room it
+/// is left out.
 pub fn draw(painter: &Painter, at: Pos2, frame: &Frame, language: Language) {
     match &frame.legend {
         Legend::Ramp { colors, .. } => ramp(painter, at, frame, colors, language),

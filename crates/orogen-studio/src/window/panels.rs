@@ -86,7 +86,8 @@ impl Panels {
     /// Drops the state of the previous document.
     pub fn reset(&mut self) {
         self.inspector = Inspector::default();
-        (self.graph, self.text, self.map) = (Graph::default(), TextPanel::default(), MapPanel::default());
+        (self.text, self.map) = (TextPanel::default(), MapPanel::default());
+        self.graph.reset();
         self.tools = Tools::default();
         self.relief.reset();
     }

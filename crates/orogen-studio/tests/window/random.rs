@@ -155,7 +155,23 @@ fn random_commands_do_no_harm() {
 #[test]
 #[ignore = "long: thirty minutes of random commands"]
 fn thirty_minutes_of_random_commands_do_no_harm() {
+    let mut early = 0;
     for seed in 1..=60 {
         play(seed, Duration::from_secs(30));
+        match (seed, resident()) {
+            (20, Some(bytes)) => early = bytes,
+            (60, Some(bytes)) => assert!(bytes < early + GROWTH, "{} MiB, then {} MiB", early >> 20, bytes >> 20),
+            _ => {}
+        }
     }
+}
+
+/// The growth of the process, in bytes, that two thirds of the long form may cause.
+const GROWTH: u64 = 200 << 20;
+
+/// The memory of the process in bytes, where the system tells.
+fn resident() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    Some(line.trim().trim_end_matches(" kB").trim().parse::<u64>().ok()? << 10)
 }
