@@ -215,8 +215,8 @@ impl Studio {
         }
     }
 
-    /// Requests rings of detail with these windows, from coarse to fine, for the finest picture. `None` cancels the work
-    /// for rings, because the camera moves.
+    /// Requests rings of detail with these windows, from coarse to fine, for the finest picture. `None` cancels the
+    /// work for rings, because the camera moves.
     pub fn refine(&mut self, windows: Option<Vec<Window>>) {
         match (windows, &self.frame) {
             (Some(windows), Some(frame)) if self.is_current() => {

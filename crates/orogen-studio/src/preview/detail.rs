@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use orogen::{Grid, Progress, Result, Session, Window};
 
-use super::frame::Frame;
+use super::frame::{Frame, Key};
 use super::request::Request;
 use super::ring::Ring;
 use super::worker::{self, Wake};
@@ -22,8 +22,8 @@ pub struct Detail {
     /// The number of the last request.
     number: u64,
     running: Option<Progress>,
-    /// The last requested windows, until a change of the land or of the camera.
-    asked: Option<Vec<Window>>,
+    /// The picture and the windows of the last request, until a change of the land or of the camera.
+    asked: Option<(Key, Vec<Window>)>,
     /// The rings, from coarse to fine.
     rings: Vec<Arc<Ring>>,
 }
@@ -44,15 +44,16 @@ impl Detail {
         Detail { wake, sender, receiver, number: 0, running: None, asked: None, rings: Vec::new() }
     }
 
-    /// Requests the rings with these windows, from coarse to fine, for a finest picture and its request. Nothing happens
-    /// if they were already requested.
+    /// Requests the rings with these windows, from coarse to fine, for a finest picture and its request. Nothing
+    /// happens if they were already requested.
     pub fn ask(&mut self, session: &Session, request: Request, frame: &Arc<Frame>, windows: Vec<Window>) {
-        if self.asked.as_ref() == Some(&windows) {
+        let asked = Some((frame.key(), windows.clone()));
+        if self.asked == asked {
             return;
         }
         self.cancel();
         self.number += 1;
-        self.asked = Some(windows.clone());
+        self.asked = asked;
         let is_known = |ring: &&Arc<Ring>| ring.frame == frame.key();
         let kept: Vec<Arc<Ring>> = self.rings.iter().filter(is_known).map(Arc::clone).collect();
         // With other colors or light, the heights are the same.
@@ -143,7 +144,7 @@ impl Detail {
     /// The last requested windows; `None` after a change of the land or of the camera.
     #[must_use]
     pub fn asked(&self) -> Option<&[Window]> {
-        self.asked.as_deref()
+        self.asked.as_ref().map(|(_, windows)| windows.as_slice())
     }
 }
 
@@ -178,3 +179,6 @@ fn make(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

@@ -124,7 +124,8 @@ fn albedo(world: &World, request: &Request, frame: &Frame, heights: &Grid, progr
     if request.layer == request.surface {
         return Ok(colors.paint(heights));
     }
-    // Layers that are derived from the heights depend on the cell, or on all of the land. They are those of the picture.
+    // Layers that are derived from the heights depend on the cell, or on all of the land. Their colors are those of the
+    // picture.
     if world.plan(&[&request.layer], window).is_err() {
         return Ok(enlarged(frame, window));
     }

@@ -28,7 +28,7 @@ pub struct Pace {
 
 /// What happened since the last frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Moves {
+pub struct Changes {
     /// The camera has moved.
     pub camera: bool,
     /// Something else has changed in the picture.
@@ -47,22 +47,22 @@ impl Pace {
 
     /// The share of the pixels along a side for this frame. `time` is that of the interface, and `clock` the real time,
     /// both in seconds: a test may have an interface with a time of its own.
-    pub fn share(&mut self, moves: Moves, time: f64, clock: f64) -> f32 {
+    pub fn share(&mut self, changes: Changes, time: f64, clock: f64) -> f32 {
         if let Some(last) = self.last.filter(|last| clock - last < PAUSE) {
             self.longest = self.longest.max(clock - last);
             // Between two movements the interface may draw the same picture again, which takes little time.
-            if moves.camera {
+            if changes.camera {
                 self.adapt(self.longest);
             }
         }
-        if moves.camera {
+        if changes.camera {
             self.longest = 0.0;
         }
-        if moves.camera || moves.picture {
+        if changes.camera || changes.picture {
             self.moved = time;
         }
-        let is_moving = self.is_moving(time) || moves.is_held;
-        self.last = (moves.camera || (is_moving && self.last.is_some())).then_some(clock);
+        let is_moving = self.is_moving(time) || changes.is_held;
+        self.last = (changes.camera || (is_moving && self.last.is_some())).then_some(clock);
         if is_moving { self.share } else { 1.0 }
     }
 
@@ -70,12 +70,6 @@ impl Pace {
     #[must_use]
     pub fn is_moving(&self, time: f64) -> bool {
         time - self.moved < REST
-    }
-
-    /// The time of the last movement.
-    #[must_use]
-    pub fn moved(&self) -> f64 {
-        self.moved
     }
 
     fn adapt(&mut self, seconds: f64) {
@@ -93,7 +87,7 @@ impl Pace {
 mod tests {
     use super::*;
 
-    const CAMERA: Moves = Moves { camera: true, picture: true, is_held: true };
+    const CAMERA: Changes = Changes { camera: true, picture: true, is_held: true };
 
     /// The share after a number of moving frames, each of which takes `seconds` at full resolution, of which `fixed` do
     /// not depend on it.
@@ -120,20 +114,20 @@ mod tests {
     #[test]
     fn all_pixels_are_drawn_at_rest() {
         let mut pace = Pace::new(true);
-        assert_eq!(pace.share(Moves::default(), 0.0, 0.0), 1.0);
-        assert_eq!(pace.share(Moves { picture: true, ..Moves::default() }, 1.0, 1.0), 0.5);
-        assert_eq!(pace.share(Moves::default(), 1.1, 1.1), 0.5);
-        assert_eq!(pace.share(Moves { is_held: true, ..Moves::default() }, 1.2, 1.2), 0.5);
-        assert_eq!(pace.share(Moves::default(), 1.3, 1.3), 1.0);
+        assert_eq!(pace.share(Changes::default(), 0.0, 0.0), 1.0);
+        assert_eq!(pace.share(Changes { picture: true, ..Changes::default() }, 1.0, 1.0), 0.5);
+        assert_eq!(pace.share(Changes::default(), 1.1, 1.1), 0.5);
+        assert_eq!(pace.share(Changes { is_held: true, ..Changes::default() }, 1.2, 1.2), 0.5);
+        assert_eq!(pace.share(Changes::default(), 1.3, 1.3), 1.0);
     }
 
     #[test]
     fn pauses_between_movements_do_not_count() {
         let mut pace = Pace::new(false);
         for k in 0..50 {
-            // Every fifth frame moves; the others are drawn at once.
+            // Every fifth frame changes; the others are drawn at once.
             let time = f64::from(k) * 0.02;
-            pace.share(Moves { camera: k % 5 == 0, ..Moves::default() }, time, time);
+            pace.share(Changes { camera: k % 5 == 0, ..Changes::default() }, time, time);
             let late = f64::from(k) * 100.0;
             pace.share(CAMERA, late, late);
         }

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, CentralPanel, Panel, RichText, Ui, ViewportBuilder, ViewportClass, ViewportId};
+use eframe::egui::{self, CentralPanel, Panel, Rect, RichText, Ui, ViewportBuilder, ViewportClass, ViewportId};
 use orogen::gpu::Gpu;
 
 use super::action::Action;
+use super::background::{Background, clear};
 use super::graph_panel::Graph;
 use super::inspector::Inspector;
 use super::map_panel::MapPanel;
@@ -121,19 +122,24 @@ impl Panels {
         if layout.has_below {
             self.show_below(ui, studio, &mut layout, language, actions);
         }
-        CentralPanel::default().show(ui, |ui| self.show_views(ui, (studio, shown), &mut layout, actions));
+        CentralPanel::default().frame(clear(ui)).show(ui, |ui| {
+            let background = Background::new(ui);
+            let covered = self.show_views(ui, (studio, shown), &mut layout, actions);
+            background.draw(ui, covered);
+        });
         if layout != settings.layout {
             actions.push(Action::Layout(layout));
         }
     }
 
+    /// Shows the views with their tools. Returns the rectangle that the land in 3D covers.
     fn show_views(
         &mut self,
         ui: &mut Ui,
         (studio, shown): (&Studio, &Shown),
         layout: &mut Layout,
         actions: &mut Vec<Action>,
-    ) {
+    ) -> Rect {
         let Shown { ability, language, .. } = *shown;
         self.tools.begin(ui.ctx());
         tool_row::show(ui, "land", |ui| {
@@ -146,24 +152,28 @@ impl Panels {
             self.tools.choice(ui, language);
         });
         self.tools.settings(ui, studio, language);
-        if layout.view == View::Both {
-            let width = ui.available_width();
-            let panel = Panel::left("relief").resizable(true).default_size(layout.beside.unwrap_or(width / 2.0));
-            let relief = panel.size_range(BESIDE..=(width - BESIDE).max(BESIDE)).show(ui, |ui| {
-                self.relief.show(ui, studio, &mut self.tools, (ability, language), actions);
-            });
-            layout.beside = Some(relief.response.rect.width());
-            CentralPanel::default().show(ui, |ui| self.map.show(ui, studio, &mut self.tools, language, actions));
-            return;
-        }
         if layout.view == View::Map {
             self.map.show(ui, studio, &mut self.tools, language, actions);
-        } else {
-            self.relief.show(ui, studio, &mut self.tools, (ability, language), actions);
+            return Rect::NOTHING;
         }
+        if layout.view == View::Both {
+            let width = ui.available_width();
+            let panel = Panel::left("relief").frame(clear(ui)).resizable(true);
+            let panel = panel.default_size(layout.beside.unwrap_or(width / 2.0));
+            let relief = panel
+                .size_range(BESIDE..=(width - BESIDE).max(BESIDE))
+                .show(ui, |ui| self.relief.show(ui, studio, &mut self.tools, (ability, language), actions));
+            layout.beside = Some(relief.response.rect.width());
+            CentralPanel::default()
+                .frame(clear(ui))
+                .show(ui, |ui| self.map.show(ui, studio, &mut self.tools, language, actions));
+            return relief.inner;
+        }
+        let covered = self.relief.show(ui, studio, &mut self.tools, (ability, language), actions);
         if layout.view == View::Windows && self.show_window(ui, studio, language, actions) {
             layout.view = View::Relief;
         }
+        covered
     }
 
     /// Shows the map in a window of its own. Returns whether it was closed.

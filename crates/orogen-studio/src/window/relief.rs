@@ -12,8 +12,8 @@ use orogen::{Grid, Window};
 use wgpu::util::DeviceExt as _;
 
 use super::mesh::{Mesh, Tile};
-use super::relief_part::{Place, places, visible};
-use super::relief_pipelines::Pipelines;
+use super::relief_part::{Placement, places, visible};
+use super::relief_pipelines::{Pipelines, Way};
 use crate::preview::frame::{Frame, Key};
 use crate::preview::ring::Ring;
 
@@ -35,10 +35,10 @@ pub struct Scene {
     pub eye: [f32; 4],
 }
 
-/// The formats of the picture.
-pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// The format of its colors.
+/// The format of the picture.
 pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// The format of the positions of pixels.
+pub const POSITIONS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
 /// Maximum number of vertices along the longer side of a mesh: on a graphics card; if a CPU draws; and if a CPU draws
 /// while something moves.
@@ -73,6 +73,12 @@ impl Ability {
     #[must_use]
     pub fn samples(self) -> u32 {
         if self.is_software { 1 } else { 4 }
+    }
+
+    /// The format of depths. If a CPU draws, with the kind and part of each pixel.
+    #[must_use]
+    pub fn depth(self) -> wgpu::TextureFormat {
+        if self.is_software { wgpu::TextureFormat::Depth24PlusStencil8 } else { wgpu::TextureFormat::Depth32Float }
     }
 
     /// The number of cells along the sides of a ring.
@@ -110,24 +116,54 @@ pub struct Drawing {
     pub ability: Ability,
 }
 
-impl Drawing {
-    /// Whether another drawing is the same picture, at any resolution.
+/// The identity of a picture, at any resolution.
+#[derive(Clone)]
+pub struct PictureId {
+    frame: Key,
+    /// The windows of the rings.
+    rings: Vec<Window>,
+    scene: Scene,
+    light: Arc<LightShader>,
+    has_wire: bool,
+    size: [u32; 2],
+}
+
+impl PictureId {
+    /// Whether the land is the same.
     #[must_use]
-    pub fn is_same(&self, other: &Drawing) -> bool {
-        self.is_same_land(other)
-            && self.rings.len() == other.rings.len()
-            && self.rings.iter().zip(&other.rings).all(|(own, other)| Arc::ptr_eq(own, other))
+    pub fn has_frame(&self, frame: &Frame) -> bool {
+        self.frame == frame.key()
     }
 
-    /// Whether another drawing is the same picture except for rings of detail.
+    /// Whether the camera is the same.
     #[must_use]
-    pub fn is_same_land(&self, other: &Drawing) -> bool {
-        self.frame.key() == other.frame.key()
+    pub fn has_camera(&self, scene: &Scene) -> bool {
+        self.scene.matrix == scene.matrix
+    }
+
+    /// Whether the picture is the same except for rings of detail.
+    #[must_use]
+    pub fn is_same_land(&self, other: &PictureId) -> bool {
+        self.frame == other.frame
             && self.scene == other.scene
             && Arc::ptr_eq(&self.light, &other.light)
             && self.has_wire == other.has_wire
             && self.size == other.size
-            && self.ability == other.ability
+    }
+}
+
+impl Drawing {
+    /// The identity of the picture.
+    #[must_use]
+    pub fn id(&self) -> PictureId {
+        PictureId {
+            frame: self.frame.key(),
+            rings: self.rings.iter().map(|ring| *ring.window()).collect(),
+            scene: self.scene,
+            light: Arc::clone(&self.light),
+            has_wire: self.has_wire,
+            size: self.size,
+        }
     }
 
     /// The width and height of the drawn part in pixels.
@@ -153,11 +189,14 @@ impl CallbackTrait for Drawing {
             resources.insert(Relief::new(device, self.ability, &self.light));
         }
         if let Some(relief) = resources.get_mut::<Relief>() {
-            let is_drawn = |last: &Drawing| last.is_same(self) && last.share >= self.share;
-            if !relief.drawing.as_ref().is_some_and(is_drawn) {
+            let id = self.id();
+            let is_drawn = |(last, share): &(PictureId, f32)| {
+                last.is_same_land(&id) && last.rings == id.rings && *share >= self.share
+            };
+            if !relief.drawn.as_ref().is_some_and(is_drawn) {
                 relief.load(device, queue, self);
                 relief.draw(queue, encoder, self);
-                relief.drawing = Some(self.clone());
+                relief.drawn = Some((id, self.share));
             }
         }
         Vec::new()
@@ -167,7 +206,8 @@ impl CallbackTrait for Drawing {
         if let Some(relief) = resources.get::<Relief>()
             && let Some(target) = &relief.target
         {
-            pass.set_pipeline(&relief.pipelines.blit);
+            let is_all = relief.drawn.as_ref().is_some_and(|(_, share)| *share >= 1.0);
+            pass.set_pipeline(if is_all { &relief.pipelines.copy } else { &relief.pipelines.blit });
             pass.set_bind_group(0, &target.bind, &[]);
             pass.draw(0..3, 0..1);
         }
@@ -210,6 +250,8 @@ struct Target {
     /// The same picture with several samples per pixel, if they are used.
     many: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
+    /// The positions of pixels, if a CPU draws.
+    positions: Option<(wgpu::TextureView, wgpu::BindGroup)>,
     /// The drawn part of the picture.
     drawn: wgpu::Buffer,
     bind: wgpu::BindGroup,
@@ -227,8 +269,8 @@ struct Relief {
     light: Option<Light>,
     meshes: Vec<Buffers>,
     target: Option<Target>,
-    /// What the picture shows.
-    drawing: Option<Drawing>,
+    /// What the picture shows, and the share of its pixels along a side that are drawn.
+    drawn: Option<(PictureId, f32)>,
 }
 
 /// A texture with a label, a size and a format.
@@ -278,7 +320,7 @@ impl Relief {
             light: None,
             meshes: Vec::new(),
             target: None,
-            drawing: None,
+            drawn: None,
         }
     }
 
@@ -322,7 +364,7 @@ impl Relief {
                 Some(known) => old.remove(known),
                 None => Samples {
                     views: textures(device, queue, (heights, albedo, light), frame.levels[0]),
-                    place: uniform(device, "place", size_of::<Place>()),
+                    place: uniform(device, "place", size_of::<Placement>()),
                     identity,
                 },
             });
@@ -405,10 +447,23 @@ impl Relief {
                 wgpu::BindGroupEntry { binding: 2, resource: drawn.as_entire_binding() },
             ],
         });
+        let positions = self.ability.is_software.then(|| {
+            let positions = view(POSITIONS, 1, wgpu::TextureUsages::TEXTURE_BINDING);
+            let bind = device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("positions"),
+                layout: &self.pipelines.positions,
+                entries: &[wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: wgpu::BindingResource::TextureView(&positions),
+                }],
+            });
+            (positions, bind)
+        });
         Target {
             size,
+            positions,
             many: (samples > 1).then(|| view(COLOR, samples, wgpu::TextureUsages::empty())),
-            depth: view(DEPTH, samples, wgpu::TextureUsages::empty()),
+            depth: view(self.ability.depth(), samples, wgpu::TextureUsages::empty()),
             color,
             drawn,
             bind,
@@ -417,7 +472,7 @@ impl Relief {
 
     /// Draws the land into the picture.
     fn draw(&self, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder, drawing: &Drawing) {
-        let (Some(light), Some(target), Some(land)) = (&self.light, &self.target, self.binds.first()) else { return };
+        let (Some(light), Some(target)) = (&self.light, &self.target) else { return };
         let scene = &drawing.scene;
         let windows = drawing.windows();
         let lattices: Vec<[usize; 2]> =
@@ -432,82 +487,192 @@ impl Relief {
         // Half a pixel inside, so that no color from outside of the part is mixed in.
         let last = [(width - 0.5) / target.size[0] as f32, (height - 0.5) / target.size[1] as f32];
         queue.write_buffer(&target.drawn, 0, bytemuck::bytes_of(&[of_side, last]));
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("relief"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: target.many.as_ref().unwrap_or(&target.color),
-                depth_slice: None,
-                resolve_target: target.many.as_ref().map(|_| &target.color),
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
-            })],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &target.depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
-                stencil_ops: None,
-            }),
-            timestamp_writes: None,
-            occlusion_query_set: None,
-            multiview_mask: None,
-        });
+        let mesh = |lattice: &[usize; 2]| self.meshes.iter().find(|mesh| mesh.lattice == *lattice);
+        let meshes = lattices.iter().map(mesh);
+        let parts: Vec<Part<'_>> = self
+            .binds
+            .iter()
+            .zip(&places)
+            .zip(meshes)
+            .filter_map(|((bind, place), mesh)| Some(Part { bind, place, mesh: mesh? }))
+            .collect();
+        let Some(land) = parts.first() else { return };
+        let has_water = scene.water[1] > 0.0;
+        let view = View::of(drawing);
+        let positions = target.positions.as_ref();
+        if let (Way::Deferred { ground, water, .. }, Some((positions, _))) = (&self.pipelines.land_way, positions) {
+            let mut pass = begin(encoder, ("positions", positions, None), &target.depth, true, true);
+            pass.set_viewport(0.0, 0.0, width, height, 0.0, 1.0);
+            pass.set_bind_group(1, &light.bind, &[]);
+            for (nth, part) in parts.iter().enumerate() {
+                let is_ring = usize::from(nth > 0);
+                part.ground(&mut pass, &ground[is_ring], &view, code(nth, 0));
+                if nth == 0 {
+                    part.all(&mut pass, &ground[is_ring], &part.mesh.walls, code(nth, 1));
+                }
+                if has_water {
+                    part.all(&mut pass, &water[is_ring], &part.mesh.water, code(nth, 2));
+                }
+                if has_water && nth == 0 {
+                    part.all(&mut pass, &water[is_ring], &part.mesh.water_walls, code(nth, 3));
+                }
+            }
+        }
+        let color =
+            ("relief", target.many.as_ref().unwrap_or(&target.color), target.many.as_ref().map(|_| &target.color));
+        let is_first = positions.is_none();
+        let mut pass = begin(encoder, color, &target.depth, is_first, self.ability.is_software);
         pass.set_viewport(0.0, 0.0, width, height, 0.0, 1.0);
         pass.set_bind_group(1, &light.bind, &[]);
-        let matrix = Mat4::from_cols_array_2d(&scene.matrix);
+        match &self.pipelines.land_way {
+            Way::Forward { ground, .. } => {
+                for part in &parts {
+                    part.ground(&mut pass, ground, &view, 0);
+                }
+                land.all(&mut pass, ground, &land.mesh.walls, 0);
+            }
+            Way::Deferred { shade_ground, shade_water, shade_walls, .. } => {
+                if let Some((_, bind)) = positions {
+                    pass.set_bind_group(2, bind, &[]);
+                }
+                for (nth, part) in parts.iter().enumerate() {
+                    let is_ring = usize::from(nth > 0);
+                    part.shade(&mut pass, &shade_ground[is_ring], code(nth, 0));
+                    if has_water {
+                        part.shade(&mut pass, &shade_water[is_ring], code(nth, 2));
+                    }
+                }
+                land.shade(&mut pass, &shade_walls[0], code(0, 1));
+                if has_water {
+                    land.shade(&mut pass, &shade_walls[1], code(0, 3));
+                }
+            }
+        }
+        // The background is drawn only where there is no land.
+        land.shade(&mut pass, &self.pipelines.behind, 0);
+        if drawing.has_wire {
+            for part in &parts {
+                part.lines(&mut pass, &self.pipelines.wire, &view);
+            }
+        }
+        if let Way::Forward { water, .. } = &self.pipelines.land_way
+            && has_water
+        {
+            for part in &parts {
+                part.all(&mut pass, water, &part.mesh.water, 0);
+            }
+            land.all(&mut pass, water, &land.mesh.water_walls, 0);
+        }
+    }
+}
+
+/// The stencil of a kind of surface of a part: 0 for the ground, 1 for its walls, 2 for the water, 3 for its walls.
+/// Pixels without land have 0.
+fn code(nth: usize, kind: u32) -> u32 {
+    1 + 4 * nth as u32 + kind
+}
+
+/// Begins a pass that draws into a picture. The first one clears the depths.
+fn begin<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    (label, view, resolve_target): (&str, &wgpu::TextureView, Option<&wgpu::TextureView>),
+    depth: &wgpu::TextureView,
+    is_first: bool,
+    has_stencil: bool,
+) -> wgpu::RenderPass<'a> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+        })],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: depth,
+            depth_ops: Some(wgpu::Operations {
+                load: if is_first { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load },
+                store: if has_stencil { wgpu::StoreOp::Store } else { wgpu::StoreOp::Discard },
+            }),
+            stencil_ops: has_stencil.then_some(wgpu::Operations {
+                load: if is_first { wgpu::LoadOp::Clear(0) } else { wgpu::LoadOp::Load },
+                store: wgpu::StoreOp::Store,
+            }),
+        }),
+        timestamp_writes: None,
+        occlusion_query_set: None,
+        multiview_mask: None,
+    })
+}
+
+/// What decides which tiles are visible.
+struct View {
+    matrix: Mat4,
+    /// The lowest and highest ground.
+    levels: [f32; 2],
+}
+
+impl View {
+    fn of(drawing: &Drawing) -> View {
+        let scene = &drawing.scene;
         let level = |metres: f32| (metres - scene.extent[3]) * scene.extent[2];
         // A ring may be a little higher and lower than the land between its samples.
         let [low, high] = drawing.frame.levels;
         let spare = 0.1 * (high - low);
-        let levels = [level(low - spare), level(high + spare)];
-        let parts = || {
-            let mesh = |lattice: &[usize; 2]| self.meshes.iter().find(|mesh| mesh.lattice == *lattice);
-            self.binds
-                .iter()
-                .zip(&places)
-                .zip(lattices.iter().map(mesh))
-                .filter_map(|((bind, place), mesh)| Some((bind, place, mesh?)))
-        };
-        let all = |pass: &mut wgpu::RenderPass<'_>, (indices, count): &(wgpu::Buffer, u32)| {
-            pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..*count, 0, 0..1);
-        };
-        pass.set_pipeline(&self.pipelines.ground);
-        // The finest parts are usually in front.
-        for (nth, (bind, place, mesh)) in parts().enumerate().collect::<Vec<_>>().into_iter().rev() {
-            pass.set_bind_group(0, bind, &[]);
-            pass.set_vertex_buffer(0, mesh.vertices.slice(..));
-            pass.set_index_buffer(mesh.ground.slice(..), wgpu::IndexFormat::Uint32);
-            for range in visible(&mesh.tiles, place, levels, &matrix, |tile| tile.ground.clone()) {
-                pass.draw_indexed(range, 0, 0..1);
-            }
-            if nth == 0 {
-                all(&mut pass, &mesh.walls);
-            }
+        View { matrix: Mat4::from_cols_array_2d(&scene.matrix), levels: [level(low - spare), level(high + spare)] }
+    }
+}
+
+/// A part of the land, ready to be drawn.
+struct Part<'a> {
+    bind: &'a wgpu::BindGroup,
+    place: &'a Placement,
+    mesh: &'a Buffers,
+}
+
+impl Part<'_> {
+    fn begin(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline, code: u32) {
+        pass.set_pipeline(pipeline);
+        pass.set_stencil_reference(code);
+        pass.set_bind_group(0, self.bind, &[]);
+        pass.set_vertex_buffer(0, self.mesh.vertices.slice(..));
+    }
+
+    /// Draws the visible tiles of the ground.
+    fn ground(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline, view: &View, code: u32) {
+        self.begin(pass, pipeline, code);
+        pass.set_index_buffer(self.mesh.ground.slice(..), wgpu::IndexFormat::Uint32);
+        for range in visible(&self.mesh.tiles, self.place, view.levels, &view.matrix, |tile| tile.ground.clone()) {
+            pass.draw_indexed(range, 0, 0..1);
         }
-        // The background is drawn only where there is no land.
-        pass.set_bind_group(0, land, &[]);
-        pass.set_pipeline(&self.pipelines.behind);
+    }
+
+    /// Draws the lines of the visible tiles.
+    fn lines(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline, view: &View) {
+        self.begin(pass, pipeline, 0);
+        pass.set_index_buffer(self.mesh.lines.slice(..), wgpu::IndexFormat::Uint32);
+        for range in visible(&self.mesh.tiles, self.place, view.levels, &view.matrix, |tile| tile.lines.clone()) {
+            pass.draw_indexed(range, 0, 0..1);
+        }
+    }
+
+    /// Draws all triangles of a kind.
+    fn all(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        pipeline: &wgpu::RenderPipeline,
+        (indices, count): &(wgpu::Buffer, u32),
+        code: u32,
+    ) {
+        self.begin(pass, pipeline, code);
+        pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..*count, 0, 0..1);
+    }
+
+    /// Draws all pixels, or those with this code.
+    fn shade(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline, code: u32) {
+        self.begin(pass, pipeline, code);
         pass.draw(0..3, 0..1);
-        if drawing.has_wire {
-            pass.set_pipeline(&self.pipelines.wire);
-            for (bind, place, mesh) in parts() {
-                pass.set_bind_group(0, bind, &[]);
-                pass.set_vertex_buffer(0, mesh.vertices.slice(..));
-                pass.set_index_buffer(mesh.lines.slice(..), wgpu::IndexFormat::Uint32);
-                for range in visible(&mesh.tiles, place, levels, &matrix, |tile| tile.lines.clone()) {
-                    pass.draw_indexed(range, 0, 0..1);
-                }
-            }
-        }
-        if scene.water[1] > 0.0 {
-            pass.set_pipeline(&self.pipelines.water);
-            for (nth, (bind, _, mesh)) in parts().enumerate() {
-                pass.set_bind_group(0, bind, &[]);
-                pass.set_vertex_buffer(0, mesh.vertices.slice(..));
-                all(&mut pass, &mesh.water);
-                if nth == 0 {
-                    all(&mut pass, &mesh.water_walls);
-                }
-            }
-        }
     }
 }
 

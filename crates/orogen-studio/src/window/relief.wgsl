@@ -28,6 +28,9 @@ struct Part {
     border: vec4f,
 }
 
+// Whether the part is a ring. Without rings, what mixes in the coarser part is left out of the shaders.
+override RING: bool = true;
+
 @group(0) @binding(0) var<uniform> scene: Scene;
 @group(0) @binding(1) var heights: texture_2d<f32>;
 @group(0) @binding(2) var albedo: texture_2d<f32>;
@@ -72,7 +75,7 @@ fn in_coarser(uv: vec2f) -> vec2f {
 
 // The share of the finer samples: 0 along the border of a ring, 1 inside.
 fn detail(uv: vec2f) -> f32 {
-    if part.border.z <= 0.0 {
+    if !RING || part.border.z <= 0.0 {
         return 1.0;
     }
     let inside = min(uv, 1.0 - uv) / part.border.zw;
@@ -228,15 +231,12 @@ fn normal_of(uv: vec2f, share: f32) -> vec3f {
     return normalize(vec3f(-rise, 1.0));
 }
 
-@fragment
-fn ground(in: Corner) -> @location(0) vec4f {
-    if in.kind == 0u && is_covered(in.uv) {
-        discard;
-    }
-    let share = detail(in.uv);
-    var color = PAPER * blended(coarser_albedo, albedo, in.uv, share).rgb;
+// The color of the ground.
+fn ground_color(uv: vec2f, place: vec3f) -> vec4f {
+    let share = detail(uv);
+    var color = PAPER * blended(coarser_albedo, albedo, uv, share).rgb;
     if scene.lines.x > 0.0 {
-        let at = height(in.uv) / scene.lines.x;
+        let at = height(uv) / scene.lines.x;
         let width = max(fwidth(at), 1e-6);
         let apart = abs(fract(at - 0.5) - 0.5) / width;
         let fifth = abs(fract(at / 5.0 - 0.5) - 0.5) * 5.0 / width;
@@ -246,33 +246,27 @@ fn ground(in: Corner) -> @location(0) vec4f {
         let line = max((1.0 - smoothstep(0.5, 1.2, apart)) * room * 0.6, (1.0 - smoothstep(0.8, 1.7, fifth)) * room5);
         color *= 1.0 - line * scene.lines.y;
     }
-    if in.kind == 1u {
-        // Layers of rock in the walls.
-        let metres = in.place.y / scene.extent.z + scene.extent.w;
-        let bands = 0.93 + 0.07 * sin(metres / max(scene.water.w, 1.0) * 16.0 + in.uv.x * 3.0 + in.uv.y * 2.0);
-        return exposed(wall_light(vec3f(0.155, 0.125, 0.10) * bands, in.uv, in.place), in.place);
-    }
-    let normal = normal_of(in.uv, share);
+    let normal = normal_of(uv, share);
     let open = 0.5 + 0.5 * normal.z;
-    let sun = max(dot(normal, triple(SUN)), 0.0) * sun_seen(in.uv);
-    return exposed(diffuse(color, sun, vec4f(triple(LEVEL_SKY) * open, open)), in.place);
+    let sun = max(dot(normal, triple(SUN)), 0.0) * sun_seen(uv);
+    return exposed(diffuse(color, sun, vec4f(triple(LEVEL_SKY) * open, open)), place);
+}
+
+// The color of a wall of the ground, with layers of rock.
+fn wall_color(uv: vec2f, place: vec3f) -> vec4f {
+    let metres = place.y / scene.extent.z + scene.extent.w;
+    let bands = 0.93 + 0.07 * sin(metres / max(scene.water.w, 1.0) * 16.0 + uv.x * 3.0 + uv.y * 2.0);
+    return exposed(wall_light(vec3f(0.155, 0.125, 0.10) * bands, uv, place), place);
 }
 
 // The brightest glitter, relative to the light on a surface that faces the sun.
 const BRIGHTEST: f32 = 0.014;
 
-@fragment
-fn water(in: Corner) -> @location(0) vec4f {
-    let seen = sun_seen(in.uv);
-    let depth = scene.water.x - height(in.uv);
-    if in.kind == 3u {
-        let below = scene.water.x - (in.place.y / scene.extent.z + scene.extent.w);
-        return exposed(wall_light(water_section(max(below, 0.0)), in.uv, in.place), in.place);
-    }
-    if depth <= 0.0 || is_covered(in.uv) {
-        discard;
-    }
-    let along = along_to(in.place);
+// The color of the water.
+fn water_color(uv: vec2f, place: vec3f) -> vec4f {
+    let seen = sun_seen(uv);
+    let depth = max(scene.water.x - height(uv), 0.0);
+    let along = along_to(place);
     let up = vec3f(0.0, 0.0, 1.0);
     let cosine = max(-along.z, 0.02);
     let reflected = mirrored_share(cosine);
@@ -283,7 +277,96 @@ fn water(in: Corner) -> @location(0) vec4f {
     let glint = glitter(up, -along, triple(SUN));
     let dazzling = triple(SUNLIGHT) * (seen * (glint - glint / (1.0 + glint / BRIGHTEST)));
     let light = water_light(body, up, -along, triple(SUN), seen, reflected) - dazzling;
-    return exposed(light + reflected * mirrored, in.place);
+    return exposed(light + reflected * mirrored, place);
+}
+
+// The color of a wall of the water.
+fn water_wall_color(uv: vec2f, place: vec3f) -> vec4f {
+    let below = scene.water.x - (place.y / scene.extent.z + scene.extent.w);
+    return exposed(wall_light(water_section(max(below, 0.0)), uv, place), place);
+}
+
+// Whether there is no water at a position of the water's surface, or a finer part draws it.
+fn is_dry(uv: vec2f) -> bool {
+    return is_covered(uv) || height(uv) >= scene.water.x;
+}
+
+@fragment
+fn ground(in: Corner) -> @location(0) vec4f {
+    if in.kind == 1u {
+        return wall_color(in.uv, in.place);
+    }
+    if is_covered(in.uv) {
+        discard;
+    }
+    return ground_color(in.uv, in.place);
+}
+
+@fragment
+fn water(in: Corner) -> @location(0) vec4f {
+    if in.kind == 3u {
+        return water_wall_color(in.uv, in.place);
+    }
+    if is_dry(in.uv) {
+        discard;
+    }
+    return water_color(in.uv, in.place);
+}
+
+// A CPU shades whole blocks of pixels for each triangle, most of which are smaller than a block. It therefore draws
+// first the positions of the land, and then shades each pixel once. The stencil has the kind and part of each pixel.
+
+@fragment
+fn ground_position(in: Corner) -> @location(0) vec4f {
+    if in.kind == 0u && is_covered(in.uv) {
+        discard;
+    }
+    return vec4f(in.place, 0.0);
+}
+
+@fragment
+fn water_position(in: Corner) -> @location(0) vec4f {
+    if in.kind == 2u && is_dry(in.uv) {
+        discard;
+    }
+    return vec4f(in.place, 0.0);
+}
+
+@group(2) @binding(0) var positions: texture_2d<f32>;
+
+// The position in the part and in the view of a pixel.
+struct Position {
+    uv: vec2f,
+    place: vec3f,
+}
+
+fn position_at(in: Blit) -> Position {
+    let place = textureLoad(positions, vec2i(in.clip.xy), 0).xyz;
+    return Position((place.xz - part.rect.xy) / part.rect.zw, place);
+}
+
+@fragment
+fn shade_ground(in: Blit) -> @location(0) vec4f {
+    let at = position_at(in);
+    return ground_color(at.uv, at.place);
+}
+
+@fragment
+fn shade_wall(in: Blit) -> @location(0) vec4f {
+    let at = position_at(in);
+    return wall_color(at.uv, at.place);
+}
+
+@fragment
+fn shade_water(in: Blit) -> @location(0) vec4f {
+    let at = position_at(in);
+    return water_color(at.uv, at.place);
+}
+
+@fragment
+fn shade_water_wall(in: Blit) -> @location(0) vec4f {
+    let at = position_at(in);
+    return water_wall_color(at.uv, at.place);
 }
 
 // Number of steps towards the sun over the land in the search for its shadow.
@@ -355,6 +438,13 @@ fn covering(@builtin(vertex_index) index: u32) -> Blit {
 @group(0) @binding(1) var picture_sampler: sampler;
 // The drawn part of the picture, as a share of its sides, and the last position in it.
 @group(0) @binding(2) var<uniform> drawn: vec4f;
+
+// Without interpolation, if all pixels are drawn.
+@fragment
+fn copy(in: Blit) -> @location(0) vec4f {
+    let size = vec2f(textureDimensions(picture));
+    return textureLoad(picture, vec2i(min(in.uv * size, size - 1.0)), 0);
+}
 
 @fragment
 fn blit(in: Blit) -> @location(0) vec4f {

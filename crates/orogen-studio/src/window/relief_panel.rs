@@ -9,7 +9,7 @@ use eframe::egui_wgpu::Callback;
 use super::action::Action;
 use super::label::draft;
 use super::light::{Block, Light};
-use super::relief::{Ability, Drawing, Scene};
+use super::relief::{Ability, Drawing, PictureId, Scene};
 use super::tools::{Projection, Tools};
 use super::{legend, tool_row};
 use crate::catalogue::Language;
@@ -19,7 +19,7 @@ use crate::preview::ring::Ring;
 use crate::studio::Studio;
 use crate::view::camera::{Camera, Side};
 use crate::view::land::Land;
-use crate::view::pace::{Moves, Pace, REST};
+use crate::view::pace::{Changes, Pace, REST};
 use crate::view::rings;
 
 /// State of the view.
@@ -39,8 +39,8 @@ pub struct ReliefPanel {
     light: Light,
     /// The resolution while something moves.
     pace: Option<Pace>,
-    /// The last drawing.
-    last: Option<Drawing>,
+    /// The last picture.
+    last: Option<PictureId>,
     /// The time of the interface at which the camera moved last.
     turned: f64,
     /// When the view was created.
@@ -91,7 +91,7 @@ const PIXELS_PER_CELL: f64 = 2.0;
 const FLIGHT: f32 = 0.9;
 
 impl ReliefPanel {
-    /// Shows the view.
+    /// Shows the view. Returns the rectangle that it covers.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -99,14 +99,14 @@ impl ReliefPanel {
         tools: &mut Tools,
         (ability, language): (Option<Ability>, Language),
         actions: &mut Vec<Action>,
-    ) {
+    ) -> Rect {
         self.controls(ui, studio, language, actions);
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "relief view"));
         let painter = ui.painter_at(rect);
         let Some(ability) = ability else {
             say(ui, rect, language.text("relief.no_graphics"));
-            return;
+            return Rect::NOTHING;
         };
         let is_dragging = studio.frame.as_ref().is_some_and(|frame| {
             let rings = studio.rings();
@@ -121,7 +121,7 @@ impl ReliefPanel {
             // The line at the bottom of the window says more about failures.
             let is_failed = studio.failure.is_some() || !studio.document.is_valid();
             say(ui, rect, language.text(if is_failed { "relief.nothing" } else { "relief.waiting" }));
-            return;
+            return Rect::NOTHING;
         };
         self.settle(frame);
         let pixels = ui.pixels_per_point();
@@ -163,24 +163,24 @@ impl ReliefPanel {
         if let Some(place) = aimed {
             self.camera.target = place;
         }
+        rect
     }
 
     /// The drawing at the resolution that the time of a frame allows: all pixels at rest.
     fn paced(&mut self, ui: &Ui, drawing: Drawing) -> Drawing {
-        let last = self.last.as_ref();
-        let is_new_fine =
-            last.is_none_or(|last| last.frame.key() != drawing.frame.key()) && drawing.frame.quality == Quality::Fine;
-        let moves = Moves {
-            camera: last
-                .is_some_and(|last| last.scene.eye != drawing.scene.eye || last.scene.matrix != drawing.scene.matrix),
-            // The finest picture is the last one for now.
-            picture: last.is_none_or(|last| !last.is_same_land(&drawing)) && !is_new_fine,
+        let (last, id) = (self.last.as_ref(), drawing.id());
+        let frame = &drawing.frame;
+        // The finest picture is the last one for now.
+        let is_last = frame.quality == Quality::Fine && last.is_none_or(|last| !last.has_frame(frame));
+        let changes = Changes {
+            camera: last.is_some_and(|last| !last.has_camera(&drawing.scene)),
+            picture: last.is_none_or(|last| !last.is_same_land(&id)) && !is_last,
             is_held: ui.input(|input| input.pointer.any_down()),
         };
         let pace = self.pace.get_or_insert_with(|| Pace::new(drawing.ability.is_software));
         let time = ui.input(|input| input.time);
-        let share = pace.share(moves, time, self.opened.elapsed().as_secs_f64());
-        if moves.camera {
+        let share = pace.share(changes, time, self.opened.elapsed().as_secs_f64());
+        if changes.camera {
             self.turned = time;
         }
         if time - self.turned < REST {
@@ -189,9 +189,8 @@ impl ReliefPanel {
         } else if share < 1.0 || pace.is_moving(time) {
             ui.ctx().request_repaint_after(Duration::from_secs_f64(REST));
         }
-        let drawing = Drawing { share, ..drawing };
-        self.last = Some(drawing.clone());
-        drawing
+        self.last = Some(id);
+        Drawing { share, ..drawing }
     }
 
     /// Requests rings of detail around the place that the camera looks at, once it is at rest.

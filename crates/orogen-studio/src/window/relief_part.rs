@@ -12,7 +12,7 @@ use crate::view::rings::band;
 /// The place of a part, like `Part` in `relief.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct Place {
+pub struct Placement {
     /// West, north, width and depth in the view.
     pub rect: [f32; 4],
     /// The rectangle that a finer part covers: its first and last position, from 0, 0 to 1, 1. Empty if the first is
@@ -45,7 +45,7 @@ fn position_in(inner: &Window, outer: &Window) -> [f32; 4] {
 
 /// The places of the parts, from the whole land to the finest ring. `half` is half the width and depth of the land in
 /// the view, `vertices` are the numbers of vertices of each part along its sides.
-pub fn places(windows: &[Window], half: [f32; 2], vertices: &[[usize; 2]]) -> Vec<Place> {
+pub fn places(windows: &[Window], half: [f32; 2], vertices: &[[usize; 2]]) -> Vec<Placement> {
     let Some(land) = windows.first() else { return Vec::new() };
     let place = |k: usize| {
         let window = &windows[k];
@@ -59,7 +59,7 @@ pub fn places(windows: &[Window], half: [f32; 2], vertices: &[[usize; 2]]) -> Ve
         });
         let [columns, rows] = vertices[k.saturating_sub(1)].map(|count| count as f32);
         let border = [window.width, window.height].map(|count| band(count) as f32 / (count.max(2) - 1) as f32);
-        Place {
+        Placement {
             rect: [(2.0 * x - 1.0) * half[0], (2.0 * y - 1.0) * half[1], 2.0 * width * half[0], 2.0 * depth * half[1]],
             hole,
             coarser: position_in(window, outer),
@@ -73,7 +73,7 @@ pub fn places(windows: &[Window], half: [f32; 2], vertices: &[[usize; 2]]) -> Ve
 /// heights in the view are between `levels`.
 pub fn visible(
     tiles: &[Tile],
-    place: &Place,
+    place: &Placement,
     levels: [f32; 2],
     matrix: &Mat4,
     range: impl Fn(&Tile) -> Range<u32>,
@@ -96,7 +96,7 @@ pub fn visible(
 }
 
 /// Whether all of a tile is on the outer side of one of the planes around the picture.
-fn is_outside(tile: &Tile, place: &Place, levels: [f32; 2], matrix: &Mat4) -> bool {
+fn is_outside(tile: &Tile, place: &Placement, levels: [f32; 2], matrix: &Mat4) -> bool {
     let [west, north, width, depth] = place.rect;
     let corner = |k: usize| {
         let [u, v] = [tile.rect[k & 1][0], tile.rect[k >> 1 & 1][1]];
@@ -132,7 +132,7 @@ mod tests {
     fn only_visible_tiles_are_drawn() {
         let mesh = Mesh::new(161, 161);
         let places = places(&windows(), [1.0; 2], &[[161; 2], [81; 2]]);
-        let count = |place: &Place, camera: Camera| {
+        let count = |place: &Placement, camera: Camera| {
             let ranges = visible(&mesh.tiles, place, [0.0, 0.1], &camera.matrix(1.0), |tile| tile.ground.clone());
             ranges.iter().map(|range| range.len()).sum::<usize>()
         };

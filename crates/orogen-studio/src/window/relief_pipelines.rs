@@ -4,26 +4,64 @@ use eframe::egui_wgpu::wgpu;
 use orogen::gpu::render::LightShader;
 
 use super::mesh::Vertex;
-use super::relief::{Ability, COLOR, DEPTH};
+use super::relief::{Ability, COLOR, POSITIONS};
 
 /// The shaders of the 3D view, and the layouts of what they read.
 pub struct Pipelines {
-    /// Draws the ground.
-    pub ground: wgpu::RenderPipeline,
-    /// Draws the water.
-    pub water: wgpu::RenderPipeline,
+    /// What draws the land.
+    pub land_way: Way,
     /// Draws the lattice.
     pub wire: wgpu::RenderPipeline,
     /// Draws the background where there is no land.
     pub behind: wgpu::RenderPipeline,
-    /// Draws the picture into the window.
+    /// Draws the picture into the window, at another resolution.
     pub blit: wgpu::RenderPipeline,
+    /// Draws the picture into the window, pixel by pixel. A CPU takes much less time for it.
+    pub copy: wgpu::RenderPipeline,
     /// A part of the land.
     pub land: wgpu::BindGroupLayout,
     /// The light.
     pub light: wgpu::BindGroupLayout,
     /// The picture.
     pub picture: wgpu::BindGroupLayout,
+    /// The positions of pixels.
+    pub positions: wgpu::BindGroupLayout,
+}
+
+/// How the land is drawn.
+pub enum Way {
+    /// Each triangle is shaded as it is drawn, by a graphics card.
+    Forward {
+        /// Draws the ground and its walls.
+        ground: wgpu::RenderPipeline,
+        /// Draws the water and its walls.
+        water: wgpu::RenderPipeline,
+    },
+    /// First positions are drawn, then each pixel is shaded once, by a CPU. Each of two pipelines is for the whole land
+    /// and for rings.
+    Deferred {
+        /// Draws positions of the ground and its walls.
+        ground: [wgpu::RenderPipeline; 2],
+        /// Draws positions of the water and its walls.
+        water: [wgpu::RenderPipeline; 2],
+        /// Shades the ground.
+        shade_ground: [wgpu::RenderPipeline; 2],
+        /// Shades the water.
+        shade_water: [wgpu::RenderPipeline; 2],
+        /// Shades the walls of the ground and of the water.
+        shade_walls: [wgpu::RenderPipeline; 2],
+    },
+}
+
+/// When a pipeline draws, by the stencil of a pixel.
+#[derive(Clone, Copy, PartialEq)]
+enum Stencil {
+    /// Always.
+    Ignored,
+    /// Always; the stencil is set to the reference.
+    Set,
+    /// Where it is the reference.
+    Equal,
 }
 
 /// The layout entry of a texture.
@@ -91,6 +129,7 @@ impl Pipelines {
             ],
         );
         let light_layout = layout("light", &[uniform(0), texture(1, false)]);
+        let positions_layout = layout("positions", &[texture(0, false)]);
         let picture_layout = layout("picture", &[texture(0, true), sampler(1), uniform(2)]);
         let pipelines = |label: &str, layouts: &[Option<&wgpu::BindGroupLayout>]| {
             device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -100,6 +139,8 @@ impl Pipelines {
             })
         };
         let land_pipelines = pipelines("land", &[Some(&land_layout), Some(&light_layout)]);
+        let shade_pipelines =
+            pipelines("positions", &[Some(&land_layout), Some(&light_layout), Some(&positions_layout)]);
         let blit_pipelines = pipelines("picture", &[Some(&picture_layout)]);
         let attributes = wgpu::vertex_attr_array![0 => Float32x4];
         let vertices = [Some(wgpu::VertexBufferLayout {
@@ -107,73 +148,118 @@ impl Pipelines {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &attributes,
         })];
-        let land = |vertex: &str, fragment: &str, topology: wgpu::PrimitiveTopology| {
+        let land = |vertex: &str, fragment: &str, is_ring: bool, stencil: Stencil| {
+            let is_wire = fragment == "wire";
+            let is_mesh = vertex == "corner";
+            let topology =
+                if is_wire { wgpu::PrimitiveTopology::LineList } else { wgpu::PrimitiveTopology::TriangleList };
             // Lines are drawn over existing pixels. The background is at an infinite distance, and hides nothing.
-            let blend = (fragment == "wire").then_some(wgpu::BlendState::ALPHA_BLENDING);
-            let hides = vertex == "corner" && blend.is_none();
+            let blend = is_wire.then_some(wgpu::BlendState::ALPHA_BLENDING);
+            let format = if stencil == Stencil::Set { POSITIONS } else { COLOR };
+            let face = wgpu::StencilFaceState {
+                compare: match stencil {
+                    Stencil::Equal => wgpu::CompareFunction::Equal,
+                    _ => wgpu::CompareFunction::Always,
+                },
+                pass_op: match stencil {
+                    Stencil::Set => wgpu::StencilOperation::Replace,
+                    _ => wgpu::StencilOperation::Keep,
+                },
+                fail_op: wgpu::StencilOperation::Keep,
+                depth_fail_op: wgpu::StencilOperation::Keep,
+            };
+            let stencil_state = match stencil {
+                Stencil::Ignored => wgpu::StencilState::default(),
+                Stencil::Set | Stencil::Equal => {
+                    wgpu::StencilState { front: face, back: face, read_mask: 0xff, write_mask: 0xff }
+                }
+            };
+            let constants = [("RING", f64::from(u8::from(is_ring)))];
+            let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(fragment),
-                layout: Some(&land_pipelines),
+                layout: Some(if stencil == Stencil::Equal { &shade_pipelines } else { &land_pipelines }),
                 vertex: wgpu::VertexState {
                     module: &shader,
                     entry_point: Some(vertex),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers: if vertex == "corner" { &vertices } else { &[] },
+                    compilation_options: options.clone(),
+                    buffers: if is_mesh { &vertices } else { &[] },
                 },
                 primitive: wgpu::PrimitiveState { topology, ..wgpu::PrimitiveState::default() },
                 depth_stencil: Some(wgpu::DepthStencilState {
-                    format: DEPTH,
-                    depth_write_enabled: Some(hides),
-                    depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
-                    stencil: wgpu::StencilState::default(),
+                    format: ability.depth(),
+                    depth_write_enabled: Some(is_mesh && !is_wire),
+                    depth_compare: Some(match stencil {
+                        Stencil::Equal => wgpu::CompareFunction::Always,
+                        _ => wgpu::CompareFunction::GreaterEqual,
+                    }),
+                    stencil: stencil_state,
                     bias: wgpu::DepthBiasState::default(),
                 }),
                 multisample: wgpu::MultisampleState { count: ability.samples(), ..wgpu::MultisampleState::default() },
                 fragment: Some(wgpu::FragmentState {
                     module: &shader,
                     entry_point: Some(fragment),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &[Some(wgpu::ColorTargetState {
-                        format: COLOR,
-                        blend,
-                        write_mask: wgpu::ColorWrites::ALL,
-                    })],
+                    compilation_options: options,
+                    targets: &[Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL })],
                 }),
                 multiview_mask: None,
                 cache: None,
             })
         };
-        let blit = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("blit"),
-            layout: Some(&blit_pipelines),
-            vertex: wgpu::VertexState {
-                module: &shader,
-                entry_point: Some("covering"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
+        let blit = |fragment: &str| {
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(fragment),
+                layout: Some(&blit_pipelines),
+                vertex: wgpu::VertexState {
+                    module: &shader,
+                    entry_point: Some("covering"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: &[],
+                },
+                primitive: wgpu::PrimitiveState::default(),
+                depth_stencil: None,
+                multisample: wgpu::MultisampleState::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &shader,
+                    entry_point: Some(fragment),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets: &[Some(ability.target.into())],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        let parts = |vertex: &str, fragment: &str, stencil: Stencil| {
+            [false, true].map(|is_ring| land(vertex, fragment, is_ring, stencil))
+        };
+        let land_way = match ability.is_software {
+            true => Way::Deferred {
+                ground: parts("corner", "ground_position", Stencil::Set),
+                water: parts("corner", "water_position", Stencil::Set),
+                shade_ground: parts("covering", "shade_ground", Stencil::Equal),
+                shade_water: parts("covering", "shade_water", Stencil::Equal),
+                shade_walls: ["shade_wall", "shade_water_wall"]
+                    .map(|fragment| land("covering", fragment, false, Stencil::Equal)),
             },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &shader,
-                entry_point: Some("blit"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(ability.target.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        let triangles = wgpu::PrimitiveTopology::TriangleList;
+            false => Way::Forward {
+                ground: land("corner", "ground", true, Stencil::Ignored),
+                water: land("corner", "water", true, Stencil::Ignored),
+            },
+        };
         Pipelines {
-            ground: land("corner", "ground", triangles),
-            water: land("corner", "water", triangles),
-            wire: land("corner", "wire", wgpu::PrimitiveTopology::LineList),
-            behind: land("covering", "behind", triangles),
-            blit,
+            land_way,
+            wire: land("corner", "wire", true, Stencil::Ignored),
+            behind: match ability.is_software {
+                true => land("covering", "behind", false, Stencil::Equal),
+                false => land("covering", "behind", false, Stencil::Ignored),
+            },
+            blit: blit("blit"),
+            copy: blit("copy"),
             land: land_layout,
             light: light_layout,
             picture: picture_layout,
+            positions: positions_layout,
         }
     }
 }

@@ -1,11 +1,12 @@
 //! Compares the main views with stored pictures. `UPDATE_SNAPSHOTS=1` writes the pictures again; check them before
 //! committing.
 
-use eframe::egui::{Key, Modifiers};
+use eframe::egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, TouchPhase, vec2};
 use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, SnapshotOptions};
 use orogen::io::test_folder::TestFolder;
 use orogen_studio::catalogue::Language;
+use orogen_studio::preview::ring::Ring;
 use orogen_studio::studio::Studio;
 use orogen_studio::window::app::App;
 
@@ -48,6 +49,50 @@ fn the_main_views_look_as_they_did() {
     compare(&mut harness, "analysis");
     press(&mut harness, Modifiers::COMMAND, Key::E);
     compare(&mut harness, "export");
+}
+
+#[test]
+fn the_land_becomes_finer_where_the_camera_looks() {
+    let folder = TestFolder::new("studio-rings").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until(&mut harness, "the picture", |app| app.studio().is_some_and(Studio::is_done));
+    harness.run_steps(3);
+    let rings = |harness: &Harness<'_, App>| harness.state().studio().unwrap().rings();
+    assert!(rings(&harness).is_empty(), "from afar the picture is fine enough");
+    let middle = harness.get_by_label("relief view").rect().center();
+    harness.event(Event::PointerMoved(middle));
+    harness.run_steps(2);
+    harness.event(Event::MouseWheel {
+        unit: MouseWheelUnit::Point,
+        delta: vec2(0.0, 600.0),
+        phase: TouchPhase::Move,
+        source: MouseWheelSource::Unknown,
+        modifiers: Modifiers::NONE,
+    });
+    let is_refined = |app: &App| {
+        let studio = app.studio().unwrap();
+        studio.refining().is_some_and(|windows| !windows.is_empty()) && !studio.is_refining()
+    };
+    until(&mut harness, "the rings", is_refined);
+    harness.run_steps(3);
+    let made = rings(&harness);
+    let cells: Vec<f64> = made.iter().map(|ring| ring.window().cell).collect();
+    assert!(cells.len() > 1 && cells[0] == 5.0 && cells.is_sorted_by(|a, b| *a == 2.0 * b), "{cells:?}");
+    let fine = harness.render().unwrap();
+    // A change of the land removes them, and they come again.
+    press(&mut harness, Modifiers::COMMAND, Key::R);
+    assert!(harness.state().studio().unwrap().refining().is_none());
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    until(&mut harness, "the rings again", is_refined);
+    harness.run_steps(3);
+    let windows = |rings: &[std::sync::Arc<Ring>]| rings.iter().map(|ring| *ring.window()).collect::<Vec<_>>();
+    assert_eq!(windows(&rings(&harness)), windows(&made));
+    let again = harness.render().unwrap();
+    let differ = (0..300).filter(|k| {
+        let at = [middle.x as u32 + k - 150, middle.y as u32];
+        fine.get_pixel(at[0], at[1]) != again.get_pixel(at[0], at[1])
+    });
+    assert_eq!(differ.count(), 0);
 }
 
 /// A steep hill on the sea floor, 20 m below the water.
