@@ -7,57 +7,39 @@ import time
 from pathlib import Path
 
 import numpy
-from orogen import BINARY, WORK, Checks
-from PIL import ImageGrab
+from orogen import WORK, Checks
+from window import SIZE, STUDIO, Display, Window, environment, until
 
 checks = Checks()
-STUDIO = Path(BINARY).parent.parent / "debug" / "orogen-studio"
-SIZE = (1280, 800)
-
-
-def display():
-    """Starts a display; returns its name and its process."""
-    read, write = os.pipe()
-    server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24"],
-        pass_fds=[write], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-    )
-    os.close(write)
-    with os.fdopen(read) as pipe:
-        return f":{pipe.readline().strip()}", server
 
 
 def look(name, language, arguments, seconds, recent=()):
     """Opens the window until its picture is there; returns the picture."""
-    settings = WORK / name / "orogen"
-    settings.mkdir(parents=True, exist_ok=True)
-    remembered = {"language": language, "theme": "dark", "window": SIZE, "recent": recent}
-    (settings / "studio.json").write_text(json.dumps(remembered))
-    screen, server = display()
-    environment = {**os.environ, "DISPLAY": screen, "XDG_CONFIG_HOME": str(WORK / name), "XDG_RUNTIME_DIR": str(WORK)}
-    environment.pop("WAYLAND_DISPLAY", None)
-    studio = subprocess.Popen([STUDIO, *arguments], env=environment, stdin=subprocess.DEVNULL)
+    display = Display()
+    own = environment(WORK / name, display)
+    remember(name, {"language": language, "theme": "dark", "window": SIZE, "recent": recent})
+    window = Window(display, own, arguments)
+    colors = lambda: len(numpy.unique(display.pixels((200, 150, 600, 300)).reshape(-1, 3), axis=0))
     try:
-        end = time.monotonic() + seconds
-        colors = 0
-        while time.monotonic() < end and colors < 2000:
-            time.sleep(0.5)
-            if studio.poll() is not None:
-                break
-            picture = numpy.array(ImageGrab.grab(xdisplay=screen).convert("RGB"))
-            middle = picture[150:450, 200:800].reshape(-1, 3)
-            colors = len(numpy.unique(middle, axis=0))
-        checks.that(f"{name}: it runs", studio.poll() is None)
+        until(lambda: not window.is_running() or colors() >= 2000, seconds, 0.5)
+        checks.that(f"{name}: it runs", window.is_running())
         # The finest picture may still be on its way.
         time.sleep(3)
-        grabbed = ImageGrab.grab(xdisplay=screen)
-        grabbed.save(WORK / f"{name}.png")
-        checks.that(f"{name}: the land is drawn ({colors} colors)", colors >= 2000)
-        return numpy.array(grabbed.convert("RGB"))
+        found = colors()
+        display.picture().save(WORK / f"{name}.png")
+        checks.that(f"{name}: the land is drawn ({found} colors)", found >= 2000)
+        return display.pixels()
     finally:
-        for process in studio, server:
-            process.terminate()
-            process.wait(20)
+        window.end()
+        display.end()
+
+
+def remember(name, settings):
+    """Writes the settings of a window."""
+    folder = WORK / name / "orogen"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "studio.json").write_text(json.dumps(settings))
+    return folder
 
 
 english = look("english", "en", ["volcano"], 300)
@@ -72,86 +54,66 @@ names = [look(f"name-{n}", "en", [], 300, [f"/lands/{name}.toml"]) for n, name i
 checks.that("Chinese names are letters, not boxes", (names[0][100:150, :400] != names[1][100:150, :400]).any())
 
 # A lost graphics device: the text that was not saved is in the window of the next run, in the same process.
-settings = WORK / "loss" / "orogen"
-settings.mkdir(parents=True, exist_ok=True)
-(settings / "studio.json").write_text('{"language": "en"}')
-screen, server = display()
-environment = {**os.environ, "DISPLAY": screen, "XDG_CONFIG_HOME": str(WORK / "loss"), "XDG_RUNTIME_DIR": str(WORK)}
-environment.pop("WAYLAND_DISPLAY", None)
+settings = remember("loss", {"language": "en"})
+display = Display()
 text = "orogen = 1\n\n[world]\ncell = 10\nsize = 2000\n\n[nodes.land]\nop = \"fbm\"\n\n[outputs]\nheight = \"land\"\n"
 kept = settings / "unsaved" / "1.toml"
 kept.parent.mkdir(exist_ok=True)
 kept.write_text('# unsaved: {"title": "precious", "path": null, "folder": null}\n' + text)
-studio = subprocess.Popen(
-    [STUDIO, "classic", "--lose-device", "3"], env=environment, stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-)
+own = environment(WORK / "loss", display)
+window = Window(display, own, ["classic", "--lose-device", "3"], errors=subprocess.DEVNULL)
 try:
-    end = time.monotonic() + 300
-    again = b""
-    while time.monotonic() < end and studio.poll() is None and b"--after-loss" not in again:
-        time.sleep(0.5)
-        again = Path(f"/proc/{studio.pid}/cmdline").read_bytes()
-    checks.that("a lost device: the studio starts again", b"--after-loss" in again and studio.poll() is None)
+    line = lambda: Path(f"/proc/{window.process.pid}/cmdline").read_bytes()
+    again = until(lambda: not window.is_running() or b"--after-loss" in line(), pause=0.5)
+    checks.that("a lost device: the studio starts again", again and window.is_running())
     time.sleep(4)
-    checks.that("a lost device: the studio stays open", studio.poll() is None)
+    checks.that("a lost device: the studio stays open", window.is_running())
     checks.that("a lost device: the text is kept", text in kept.read_text())
 finally:
-    for process in studio, server:
-        process.terminate()
-        process.wait(20)
+    window.end()
+    display.end()
 
 # The clipboard is that of the system, in both directions.
 folder = WORK / "clipboard"
-(folder / "orogen").mkdir(parents=True, exist_ok=True)
-(folder / "orogen" / "studio.json").write_text(f'{{"language": "en", "window": [{SIZE[0]}, {SIZE[1]}]}}')
+remember("clipboard", {"language": "en", "window": SIZE})
 recipe = folder / "land.toml"
 recipe.write_text(text)
-screen, server = display()
-environment = {**os.environ, "DISPLAY": screen, "XDG_CONFIG_HOME": str(folder), "XDG_RUNTIME_DIR": str(WORK)}
-environment.pop("WAYLAND_DISPLAY", None)
-studio = subprocess.Popen([STUDIO, recipe], env=environment, stdin=subprocess.DEVNULL)
-
-
-def keys(*words):
-    subprocess.run(["xdotool", *words], env=environment, check=True)
-    time.sleep(0.5)
-
-
-def until(holds, seconds=60):
-    end = time.monotonic() + seconds
-    while time.monotonic() < end and not holds():
-        time.sleep(0.5)
-    return holds()
+display = Display()
+own = environment(folder, display)
+window = Window(display, own, [recipe])
 
 
 def clipboard():
     found = subprocess.run(
-        ["xclip", "-out", "-selection", "clipboard"], env=environment, capture_output=True, text=True, timeout=20,
+        ["xclip", "-out", "-selection", "clipboard"], env=own, capture_output=True, text=True, timeout=20,
     )
     return found.stdout
 
 
+def keys(*keys):
+    window.keys(*keys)
+    time.sleep(0.5)
+
+
 try:
-    found = ["xdotool", "search", "--onlyvisible", "--name", "Orogen"]
-    until(lambda: subprocess.run(found, env=environment, capture_output=True).returncode == 0, 300)
-    window = subprocess.run(found, env=environment, capture_output=True, text=True).stdout.split()[0]
+    window.focus()
     time.sleep(3)
-    keys("windowfocus", window)
     # The text of the recipe is at the bottom.
-    keys("mousemove", "--window", window, "640", "200", "key", "ctrl+4")
-    keys("mousemove", "--window", window, "400", "640", "click", "1")
-    keys("key", "ctrl+a", "key", "ctrl+c")
-    checks.that("a copied text reaches other programs", until(lambda: clipboard() == text))
+    window.point((640, 200))
+    keys("ctrl+4")
+    window.click((400, 640))
+    time.sleep(0.5)
+    keys("ctrl+a", "ctrl+c")
+    checks.that("a copied text reaches other programs", until(lambda: clipboard() == text, 60))
     other = text.replace("cell = 10", "cell = 20")
-    subprocess.run(["xclip", "-in", "-selection", "clipboard"], env=environment, input=other, text=True, check=True)
-    keys("key", "ctrl+a", "key", "ctrl+v")
-    keys("key", "ctrl+s")
-    checks.that("a text of another program is pasted", until(lambda: recipe.read_text() == other))
+    subprocess.run(["xclip", "-in", "-selection", "clipboard"], env=own, input=other, text=True, check=True)
+    keys("ctrl+a", "ctrl+v")
+    keys("ctrl+s")
+    checks.that("a text of another program is pasted", until(lambda: recipe.read_text() == other, 60))
 finally:
-    ImageGrab.grab(xdisplay=screen).save(WORK / "clipboard.png")
-    for process in studio, server:
-        process.terminate()
-        process.wait(20)
+    display.picture().save(WORK / "clipboard.png")
+    window.end()
+    display.end()
 
 # Without a display it says what is missing.
 without = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}

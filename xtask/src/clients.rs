@@ -12,7 +12,7 @@ mod passed;
 mod presets;
 pub mod python;
 mod remote;
-mod studio;
+pub mod studio;
 mod wasm;
 
 use std::path::{Path, PathBuf};
@@ -54,7 +54,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step of
   layers    WhiteboxTools and traces along flow directions give the same layers of water
   taplo     taplo validates every recipe against the JSON Schema, and rejects broken ones
   python    the Python package in a new environment: its tests, its types, its generated files
-  studio    the studio's tests with Mesa's software Vulkan, and its window under Xvfb in both languages
+  studio    the studio's tests with Mesa's software Vulkan, and its window under Xvfb in both languages: eleven jobs by mouse and keyboard
   gpu       fields, filters, presets and pictures on a graphics card, or Mesa's software Vulkan, beside the processor's; and without any card
 
 Only if named or with --all, because they take long or need large programs:
@@ -164,8 +164,10 @@ const CLIENTS: &[Client] = &[
             ("Xvfb", "xvfb"),
             ("xdotool", "xdotool"),
             ("xclip", "xclip"),
+            ("dbus-daemon", "dbus-daemon"),
+            ("/usr/libexec/at-spi-bus-launcher", "at-spi2-core"),
         ],
-        pip: &[NUMPY, PILLOW],
+        pip: &[NUMPY, PILLOW, RASTERIO, "jeepney==0.9.0"],
         npm: &[],
     },
     Client {
@@ -381,7 +383,9 @@ fn script_for(client: &str, script: &str) -> Result {
 
 /// [`script_for`] with another Python.
 fn script_by(python: &Path, client: &str, script: &str) -> Result {
-    let work = folder().join("work").join(client);
+    // A client's second script leaves the files of the first.
+    let name = if client == script { client.to_owned() } else { format!("{client}-{script}") };
+    let work = folder().join("work").join(name);
     crate::shell::empty_dir(&work)?;
     let mut command = program(python);
     command

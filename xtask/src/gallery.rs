@@ -1,7 +1,5 @@
 //! `cargo xtask gallery`: makes the pictures of the README and the docs with `orogen` itself.
 
-use std::path::PathBuf;
-
 use crate::failure::{Failure, Result, on_file};
 use crate::{codegen, shell};
 
@@ -13,11 +11,12 @@ mod presets;
 mod tilemap;
 mod views;
 mod water;
+mod windows;
 
 pub const ABOUT: &str = "make the pictures in docs/images and in the noises' docs";
 
 pub const HELP: &str = "
-Usage: cargo xtask gallery [PRESET]
+Usage: cargo xtask gallery [PRESET | studio]
 
 Rewrites docs/images/: one relief map of each preset, the views of docs/render.md and the README's first picture, a
 map sheet, the zoom of docs/levels.md, water as vectors, a tilemap, blocks, all palettes, the page of noises side by side, and the chunks around a viewer. Pictures of the studio's window stay. Then the pictures
@@ -26,10 +25,8 @@ crates/orogen-noise/docs/gallery.md: the pictures at the top of the documentatio
 file, so that every renderer shows them.
 
   PRESET  make the pictures of this preset alone, and docs/gallery.md
+  studio  take the pictures of jobs in the studio that the last `cargo xtask clients studio` left
 ";
-
-/// Pictures of windows, which `cargo xtask clients studio` leaves in its folder.
-const WINDOWS: [&str; 2] = ["studio.png", "studio-zh.png"];
 
 /// Makes the pictures.
 pub fn run(args: &[String]) -> Result {
@@ -38,6 +35,7 @@ pub fn run(args: &[String]) -> Result {
     let presets: Vec<(&str, &str)> = listed.lines().filter_map(|line| line.split_once(char::is_whitespace)).collect();
     match args {
         [] => {}
+        [named] if named == "studio" => return windows::write(&images),
         [named] if presets.iter().any(|(preset, _)| preset == named) => {
             presets::write(named, &images)?;
             presets::page(&presets)?;
@@ -46,15 +44,9 @@ pub fn run(args: &[String]) -> Result {
         [named] => return Err(Failure::usage(format!("there is no preset '{named}'; `orogen presets` lists them"))),
         _ => return Err(Failure::usage("expected nothing or a preset")),
     }
-    let windows: Vec<(PathBuf, Vec<u8>)> = WINDOWS
-        .iter()
-        .map(|name| images.join(name))
-        .filter_map(|path| std::fs::read(&path).ok().map(|bytes| (path, bytes)))
-        .collect();
+    let kept = windows::read(&images)?;
     shell::empty_dir(&images)?;
-    for (path, bytes) in windows {
-        std::fs::write(&path, bytes).map_err(|e| on_file("write", &path, &e))?;
-    }
+    windows::restore(&images, kept)?;
     let work = shell::target_dir().join("gallery");
     for (preset, _) in &presets {
         presets::write(preset, &images)?;

@@ -13,9 +13,15 @@ pub fn build() -> Result {
     sh(&mut cargo(&format!("build --quiet {WINDOW} --bins")))
 }
 
-/// Runs its tests of user actions, and opens its window in both languages.
+/// The folder in which the script of the jobs leaves its pictures.
+pub fn pictures() -> std::path::PathBuf {
+    super::folder().join("work/studio-jobs")
+}
+
+/// Runs its tests of user actions, opens its window in both languages, and does the jobs of a new user there.
 pub fn check() -> Result {
     sh(&mut cargo(&format!("test --quiet {WINDOW} --lib --test window")))?;
     sh(&mut cargo(&format!("build --quiet {WINDOW} --bins")))?;
-    super::script("studio")
+    super::script("studio")?;
+    super::script_for("studio", "jobs")
 }
