@@ -16,7 +16,7 @@ pub struct Pipelines {
     pub behind: wgpu::RenderPipeline,
     /// Draws the picture into the window, at another resolution.
     pub blit: wgpu::RenderPipeline,
-    /// Draws the picture into the window, pixel by pixel. A CPU takes much less time for it.
+    /// Draws the picture into the window, pixel by pixel. A CPU takes more time to interpolate.
     pub copy: wgpu::RenderPipeline,
     /// A part of the land.
     pub land: wgpu::BindGroupLayout,

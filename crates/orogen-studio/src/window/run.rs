@@ -60,7 +60,7 @@ pub fn run() -> ExitCode {
         .with_app_id("orogen-studio")
         .with_inner_size(settings.window.unwrap_or(SIZES[0]))
         .with_min_inner_size(SIZES[1]);
-    // The interface has no gradients to smooth; drawn by a CPU, they would take half of its time.
+    // The interface has no gradients that need dithering, which takes a CPU time for each pixel.
     let options = eframe::NativeOptions { viewport, dithering: false, ..eframe::NativeOptions::default() };
     let watch = DeviceWatch::default();
     let begin = Start {
