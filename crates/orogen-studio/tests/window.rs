@@ -6,6 +6,8 @@
 mod export;
 #[path = "window/finding.rs"]
 mod finding;
+#[path = "window/keyboard.rs"]
+mod keyboard;
 #[path = "window/manners.rs"]
 mod manners;
 #[path = "window/random.rs"]

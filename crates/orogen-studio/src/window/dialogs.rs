@@ -134,7 +134,9 @@ impl FileDialog {
                 let field = ui.add(
                     TextEdit::singleline(&mut self.name).desired_width(360.0).hint_text(language.text("file.name")),
                 );
-                field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "file name"));
+                field.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::Role::TextInput, true, language.text("spoken.file_name"))
+                });
                 if std::mem::take(&mut self.is_new) {
                     field.request_focus();
                 }
@@ -173,7 +175,9 @@ impl FileDialog {
         let Some(name) = &mut self.new_folder else { return };
         let hint = language.text("file.folder_name");
         let field = ui.add(TextEdit::singleline(name).desired_width(120.0).hint_text(hint));
-        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "folder name"));
+        field.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::TextInput, true, language.text("spoken.folder_name"))
+        });
         if button.clicked() {
             field.request_focus();
         }

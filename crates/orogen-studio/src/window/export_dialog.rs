@@ -153,7 +153,9 @@ impl ExportDialog {
         let name = if self.export.kind.is_folder() { "export.folder" } else { "export.file" };
         ui.label(language.text(name));
         let field = ui.add(TextEdit::singleline(&mut self.path).desired_width(380.0));
-        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "file of export"));
+        field.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::TextInput, true, language.text("spoken.export_file"))
+        });
         if field.changed() {
             self.export.set_path(&self.path);
         }

@@ -65,7 +65,7 @@ impl Graph {
                 ui.scope_id().with(("frame", k)),
                 Sense::click_and_drag(),
             );
-            let label = format!("frame {}", frame.title);
+            let label = language.fill("spoken.frame", &[("name", &frame.title)]);
             handle.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
             if handle.dragged_by(PointerButton::Primary) {
                 self.drag(inside.iter().filter_map(|at| scene.boxes.get(*at)), handle.drag_delta());
@@ -83,7 +83,7 @@ fn menu(ui: &mut Ui, (kept, k): (&Kept, usize), language: Language, actions: &mu
     let Some(frame) = kept.frames.get(k) else { return };
     let mut title = frame.title.clone();
     let field = ui.add(TextEdit::singleline(&mut title).desired_width(180.0));
-    field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "title of frame"));
+    field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, language.text("spoken.frame_title")));
     if field.changed() {
         actions.push(Action::Edit(Edit::FrameTitle { frame: k, title }));
     }

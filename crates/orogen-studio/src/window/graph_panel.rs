@@ -114,7 +114,7 @@ impl Graph {
         self.update(studio);
         self.load(ui, studio);
         let (rect, background) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        background.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "graph"));
+        background.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, language.text("spoken.graph")));
         let is_resized = self.fitted.is_some_and(|size| size != rect.size());
         if std::mem::take(&mut self.wants_whole) || is_resized {
             self.fit(studio, rect.size());
@@ -305,10 +305,10 @@ impl Graph {
         let id = ui.scope_id().with(("node", &block.id));
         let response = ui.interact(rect.intersect(clip), id, Sense::click_and_drag());
         let label = match block.kind {
-            Kind::Node(_) => format!("node {}", block.id),
-            Kind::Group => format!("group {}", block.id.trim_end_matches('/')),
-            Kind::Outside => format!("outside {}", block.title),
-            Kind::Output => format!("output box {}", block.title),
+            Kind::Node(_) => language.fill("spoken.node", &[("name", &block.id)]),
+            Kind::Group => language.fill("spoken.group", &[("name", block.id.trim_end_matches('/'))]),
+            Kind::Outside => language.fill("spoken.outside", &[("name", &block.title)]),
+            Kind::Output => language.fill("spoken.output", &[("name", &block.title)]),
         };
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, label.clone()));
         let is_own = !matches!(block.kind, Kind::Outside | Kind::Output);
@@ -354,7 +354,8 @@ impl Graph {
             let out = graph_box::at(rect, graph_box::outlet(block, k), self.zoom, true);
             let grip = Rect::from_center_size(out, Vec2::splat(15.0 * self.zoom.max(0.5))).intersect(clip);
             let grip = ui.interact(grip, ui.scope_id().with(("out", &block.id, name)), Sense::drag());
-            grip.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, format!("output {name}")));
+            let spoken = language.fill("spoken.layer", &[("name", name)]);
+            grip.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, spoken.clone()));
             if grip.drag_started() {
                 self.wire = Some(name.clone());
             }

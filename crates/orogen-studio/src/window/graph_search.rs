@@ -154,7 +154,7 @@ fn op_entry(ui: &mut Ui, op: &str, pictures: &mut OpTextures, language: Language
         Some(picture) => ui.add(Button::selectable(false, (Image::new((picture, side)), words))),
         None => ui.add(Button::selectable(false, words).min_size(vec2(0.0, PICTURE))),
     };
-    entry.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, op));
+    entry.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, language.named(op)));
     entry.on_hover_text(about).clicked()
 }
 

@@ -79,7 +79,7 @@ impl Inspector {
         let is_formula = recipe.formula(node, key).is_some();
         let is_on = is_formula || self.expressions.is_typed(&site);
         let button = ui.selectable_label(is_on, RichText::new("ƒ").small());
-        let label = format!("formula {node}.{key}");
+        let label = language.fill("spoken.formula", &[("name", &format!("{node}.{key}"))]);
         button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, label.clone()));
         if !button.on_hover_text(language.text("inspector.formula")).clicked() {
             return;

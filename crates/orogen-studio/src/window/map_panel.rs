@@ -69,7 +69,7 @@ impl MapPanel {
             self.comparison(ui, studio, language, actions);
         });
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "map view"));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, language.text("spoken.map")));
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
         let Some(frame) = &studio.frame else { return };

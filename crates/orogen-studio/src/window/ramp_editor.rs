@@ -84,7 +84,7 @@ impl RampEditor {
         let mut is_open = true;
         window(context, language.text("colors.title"), &mut is_open, vec2(440.0, 170.0), |ui| {
             ui.horizontal(|ui| self.start(ui, language, actions));
-            self.bar(ui);
+            self.bar(ui, language);
             ui.horizontal(|ui| self.stop(ui, language));
             ui.weak(language.text("colors.help"));
         });
@@ -98,7 +98,9 @@ impl RampEditor {
     fn start(&mut self, ui: &mut Ui, language: Language, actions: &mut Vec<Action>) {
         let mut name = self.ramp.palette().name.clone();
         let field = ui.add(TextEdit::singleline(&mut name).desired_width(120.0));
-        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "palette name"));
+        field.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::TextInput, true, language.text("spoken.palette_name"))
+        });
         if field.changed() {
             self.ramp.rename(&name);
         }
@@ -129,9 +131,10 @@ impl RampEditor {
     }
 
     /// The ramp with handles at its colors.
-    fn bar(&mut self, ui: &mut Ui) {
+    fn bar(&mut self, ui: &mut Ui, language: Language) {
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 54.0), Sense::click());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "color ramp"));
+        response
+            .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, language.text("spoken.color_ramp")));
         let painter = ui.painter_at(rect);
         let inner = Rect::from_min_max(rect.min + vec2(8.0, 2.0), rect.max - vec2(8.0, 20.0));
         let colors = self.ramp.colors(STEPS);
@@ -149,7 +152,8 @@ impl RampEditor {
             let place = pos2(x_of(at), inner.bottom() + 9.0);
             let around = Rect::from_center_size(place, Vec2::splat(14.0));
             let handle = ui.interact(around, response.id.with(k), Sense::click_and_drag());
-            handle.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, format!("color {k}")));
+            let spoken = language.fill("spoken.color", &[("number", &(k + 1).to_string())]);
+            handle.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, spoken.clone()));
             if handle.clicked() || handle.drag_started() {
                 self.selected = k;
             }
@@ -188,7 +192,9 @@ impl RampEditor {
         let mut position = at;
         ui.label(language.text("colors.position"));
         let field = ui.add(DragValue::new(&mut position).speed((high - low).abs() * 0.002).max_decimals(4));
-        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "position of the color"));
+        field.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Slider, true, language.text("spoken.color_position"))
+        });
         if field.changed() {
             self.ramp.set_position(self.selected, position);
         }

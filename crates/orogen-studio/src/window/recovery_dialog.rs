@@ -88,14 +88,22 @@ impl Offer {
             ui.horizontal(|ui| {
                 let open = ui.button(language.text("recovery.open"));
                 open.widget_info(|| {
-                    egui::WidgetInfo::labeled(egui::Role::Button, true, format!("open {}", unsaved.title))
+                    egui::WidgetInfo::labeled(
+                        egui::Role::Button,
+                        true,
+                        language.fill("spoken.open", &[("name", &unsaved.title)]),
+                    )
                 });
                 if open.clicked() {
                     actions.push(Action::OpenUnsaved(unsaved.clone()));
                 }
                 let drop = ui.button(language.text("recovery.drop"));
                 drop.widget_info(|| {
-                    egui::WidgetInfo::labeled(egui::Role::Button, true, format!("delete {}", unsaved.title))
+                    egui::WidgetInfo::labeled(
+                        egui::Role::Button,
+                        true,
+                        language.fill("spoken.delete", &[("name", &unsaved.title)]),
+                    )
                 });
                 if drop.clicked() {
                     actions.push(Action::DropUnsaved(unsaved.clone()));

@@ -102,7 +102,7 @@ impl ReliefPanel {
     ) -> Rect {
         self.controls(ui, studio, language, actions);
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "relief view"));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, language.text("spoken.relief")));
         let painter = ui.painter_at(rect);
         let Some(ability) = ability else {
             say(ui, rect, language.text("relief.no_graphics"));

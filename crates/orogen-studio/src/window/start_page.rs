@@ -62,7 +62,8 @@ impl StartPage {
                     let picture =
                         self.pictures.iter().find(|(name, _)| *name == preset.name).map(|(_, picture)| picture);
                     let name = language.named(preset.name);
-                    if card(ui, name, &language.hint(preset.name, about), picture) {
+                    let spoken = language.fill("spoken.preset", &[("name", name)]);
+                    if card(ui, [name, &spoken, &language.hint(preset.name, about)], picture) {
                         actions.push(Action::OpenPreset(preset.name));
                     }
                 }
@@ -71,9 +72,10 @@ impl StartPage {
     }
 }
 
-fn card(ui: &mut Ui, name: &str, about: &str, picture: Option<&TextureHandle>) -> bool {
+/// A picture with a name, its name for screen readers, and its description.
+fn card(ui: &mut Ui, [name, spoken, about]: [&str; 3], picture: Option<&TextureHandle>) -> bool {
     let (rect, response) = ui.allocate_exact_size(vec2(SIDE, SIDE + 22.0), Sense::click());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("preset {name}")));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, spoken));
     let response = response.on_hover_text(about);
     let painter = ui.painter_at(rect);
     let image = egui::Rect::from_min_size(rect.min, Vec2::splat(SIDE));

@@ -69,7 +69,9 @@ impl TextPanel {
                     .layouter(&mut layouter)
                     .show(ui);
                 let response = &output.response.response;
-                response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "recipe"));
+                response.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::Role::TextInput, true, language.text("spoken.recipe"))
+                });
                 let row = ui.fonts_mut(|fonts| fonts.row_height(&FontId::monospace(SIZE)));
                 let painter = ui.painter();
                 for n in 1..=numbers {

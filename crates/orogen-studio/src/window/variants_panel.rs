@@ -72,7 +72,7 @@ impl VariantsPanel {
         egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
             ui.horizontal(|ui| {
                 for variant in &self.variants {
-                    if card(ui, variant, side) {
+                    if card(ui, variant, side, language) {
                         actions.push(Action::Edit(variant.edit.clone()));
                         actions.push(Action::EndGesture);
                     }
@@ -115,9 +115,9 @@ fn texture(ui: &Ui, k: usize, picture: &Picture) -> TextureHandle {
     ui.ctx().load_texture(format!("variant {k}"), image, TextureOptions::LINEAR)
 }
 
-fn card(ui: &mut Ui, variant: &Variant, side: f32) -> bool {
+fn card(ui: &mut Ui, variant: &Variant, side: f32, language: Language) -> bool {
     let (rect, response) = ui.allocate_exact_size(vec2(side, side + 18.0), Sense::click());
-    let label = format!("variant {}", variant.value);
+    let label = language.fill("spoken.variant", &[("value", &variant.value)]);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, label.clone()));
     let painter = ui.painter_at(rect);
     let image = egui::Rect::from_min_size(rect.min, Vec2::splat(side));

@@ -101,7 +101,12 @@ fn draw(painter: &egui::Painter, projection: &Projection, points: &[[f64; 2]], i
 }
 
 /// Handles at the points of the selected drawing. Returns whether one is being dragged.
-pub fn handles(ui: &Ui, projection: &Projection, studio: &Studio, actions: &mut Vec<Action>) -> bool {
+pub fn handles(
+    ui: &Ui,
+    projection: &Projection,
+    (studio, language): (&Studio, Language),
+    actions: &mut Vec<Action>,
+) -> bool {
     let Some((name, mut points)) = selected(studio) else { return false };
     let mut is_moving = false;
     for k in 0..points.len() {
@@ -111,7 +116,8 @@ pub fn handles(ui: &Ui, projection: &Projection, studio: &Studio, actions: &mut 
             continue;
         }
         let handle = ui.interact(around, ui.scope_id().with((name, k)), Sense::drag());
-        handle.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, format!("point {k} of {name}")));
+        let spoken = language.fill("spoken.point", &[("number", &(k + 1).to_string()), ("name", name)]);
+        handle.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, &spoken));
         if handle.dragged()
             && let Some(at) = handle.interact_pointer_pos().and_then(|at: Pos2| projection.world(at))
         {

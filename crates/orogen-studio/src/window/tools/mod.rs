@@ -140,7 +140,7 @@ impl Tools {
         actions: &mut Vec<Action>,
     ) -> bool {
         // With a brush, the points of a drawing cannot be dragged.
-        let is_dragging = !self.is_brush() && drawing::handles(ui, projection, studio, actions);
+        let is_dragging = !self.is_brush() && drawing::handles(ui, projection, (studio, language), actions);
         match self.tool {
             Tool::Move => {}
             Tool::Profile => self.profile.drag(response, projection),
