@@ -4,6 +4,8 @@ import re
 import signal
 import tomllib
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy
 import rasterio
@@ -42,7 +44,10 @@ class User:
 
     def __init__(self, language):
         self.language, self.text = language, Texts(language)
-        self.folder = WORK / language
+        # Pictures for the docs show no path of this machine.
+        self.temporary = TemporaryDirectory(prefix="lands-")
+        self.folder = Path(self.temporary.name)
+        self.window = None
         self.display = Display()
         self.environment = environment(self.folder / "settings", self.display)
         self.environment["LC_ALL"] = LANGUAGES[language]
@@ -56,7 +61,9 @@ class User:
 
     def end(self):
         for one in self.window, self.bus, self.display:
-            one.end()
+            if one:
+                one.end()
+        self.temporary.cleanup()
 
     def that(self, what, holds, found=""):
         checks.that(f"{self.language}: {what}", holds, found)
@@ -250,6 +257,8 @@ class User:
 
     def corners(self, places):
         """Draws points, each once the one before is on the map."""
+        # What is drawn later, such as the end of the drawing before, is no point.
+        self.settled()
         for x, y in places:
             around = (x - 6, y - 6, 12, 12)
             before = self.display.pixels(around)
@@ -303,8 +312,9 @@ class User:
             field = text("spoken.export_file")
             window.press(field, "text", seen=lambda: window.has_focus(field))
             window.keys("ctrl+a")
-            window.type(file)
-            done = text("export.done", file=file, what="")
+            # The window runs in this folder.
+            window.type(name)
+            done = text("export.done", file=name, what="")
             made = lambda: [one.name for one in window.controls() if one.name.startswith(done)]
             window.press(text("export.start"), "button", seen=made)
             self.that(f"{name}: it says what it made", made())
