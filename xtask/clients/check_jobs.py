@@ -236,24 +236,30 @@ class User:
         self.done()
 
     def draw(self):
-        """A line and an area on the map."""
+        """A line and an area on the map; the area raises the land."""
         window, text = self.window, self.text
         window.keys("ctrl+2", "ctrl+3")
         left, top, width, height = window.control(text("spoken.map")).place
         x, y = left + width // 2, top + height // 2
-        window.press(text("map.path"), "button", seen=lambda: window.find(text("map.draw_help")))
+        window.press(text("tool.path"), "button", seen=lambda: window.find(text("tool.draw_help")))
         clicks = [(x - 120, y + 60), (x - 40, y - 40), (x + 60, y + 20), (x + 120, y - 60)]
         self.corners(clicks)
+        window.press(text("drawing.alone"), "button", seen=lambda: ops(self.unsaved(), "path"))
         drawn = self.text_with("a line is drawn", lambda own: ops(own, "path"))
         points = numpy.array(ops(drawn, "path")[0]["points"], float)
         scales = numpy.diff(points, axis=0) / numpy.diff(numpy.array(clicks), axis=0)
         self.that("the line is where it was drawn", scales.min() > 0 and numpy.ptp(scales) < 0.5, points)
-        window.press(text("map.polygon"), "button", seen=lambda: window.find(text("map.draw_help")))
+        window.press(text("tool.polygon"), "button", seen=lambda: window.find(text("tool.draw_help")))
         self.corners([(x - 60, y - 60), (x + 60, y - 80), (x + 80, y + 60), (x - 80, y + 70)])
+        window.control(text("drawing.raise"), "button")
+        self.settled()
+        self.keep("draw")
+        window.press(text("drawing.raise"), "button", seen=lambda: ops(self.unsaved(), "polygon"))
         area = self.text_with("an area is drawn", lambda own: ops(own, "polygon"))
         self.that("it has four points", len(ops(area, "polygon")[0]["points"]) == 4, area)
+        name, node = end(area)
+        self.that("it raises the land", node["op"] == "add" and node["b"] > 0 and node["mask"] in nodes(area), area)
         self.done()
-        self.keep("draw")
 
     def corners(self, places):
         """Draws points, each once the one before is on the map."""
@@ -272,7 +278,7 @@ class User:
         before = self.unsaved()
         left, top, width, height = window.control(text("spoken.map")).place
         x, y = left + width // 2, top + height // 2
-        window.press(text("map.raise"), "button", seen=lambda: window.find(text("map.radius"), "slider"))
+        window.press(text("tool.raise"), "button", seen=lambda: window.find(text("tool.radius"), "slider"))
         stroke = (x - 100, y + 40), (x, y - 20), (x + 90, y + 40)
         window.drag(*stroke, until_seen=lambda: ops(self.unsaved(), "paint"))
         painted = self.text_with("a stroke is painted", lambda own: ops(own, "paint"))

@@ -82,6 +82,11 @@ class Display:
 def environment(folder, display):
     """The environment of a window whose settings are in a folder."""
     folder.mkdir(parents=True, exist_ok=True)
+    settings = folder / "orogen" / "studio.json"
+    if not settings.exists():
+        # A desktop portal, where there is one, would show its own dialogs.
+        settings.parent.mkdir(exist_ok=True)
+        settings.write_text('{"has_system_dialogs": false}')
     own = {**os.environ, "DISPLAY": display.name, "XDG_CONFIG_HOME": str(folder), "XDG_RUNTIME_DIR": str(folder)}
     own.pop("WAYLAND_DISPLAY", None)
     return own
