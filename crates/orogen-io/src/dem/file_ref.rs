@@ -125,6 +125,8 @@ impl FileRef {
     #[must_use]
     pub fn text(&self) -> String {
         match &self.folder {
+            // No file.
+            _ if self.path.is_empty() => String::new(),
             Some(_) if fs::is_remote(self.path()) => self.path().display().to_string(),
             Some(_) => std::path::absolute(self.path()).unwrap_or_else(|_| self.path()).display().to_string(),
             None => self.path.clone(),

@@ -157,7 +157,7 @@ pub fn draw(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, 
 fn words(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, shown: &Shown) {
     let zoom = shown.zoom;
     let inside = painter.with_clip_rect(rect.intersect(painter.clip_rect()));
-    let small = FontId::proportional(10.5 * zoom);
+    let small = font(10.5 * zoom);
     let is_small = zoom < READABLE;
     let (name, below) = (if is_small { (3.0, 2.0) } else { (7.0, 4.0) }, (7.0, 19.0));
     let write = |(x, y): (f32, f32), text: &str, font: FontId, color: Color32| {
@@ -167,7 +167,7 @@ fn words(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, sho
         let galley = inside.fonts_mut(|fonts| fonts.layout_job(job));
         inside.galley(rect.min + vec2(x, y) * zoom, galley, color);
     };
-    write(name, &block.title, FontId::proportional((13.0 * zoom).max(LEAST)), Color32::WHITE);
+    write(name, &block.title, font((13.0 * zoom).max(LEAST)), Color32::WHITE);
     if is_small {
         return;
     }
@@ -194,6 +194,12 @@ fn words(painter: &Painter, visuals: &Visuals, block: &GraphBox, rect: Rect, sho
             inside.text(place, Align2::RIGHT_CENTER, block.inside(name), small.clone(), visuals.text_color());
         }
     }
+}
+
+/// A font of nearly this size. At sizes without steps, each scale of the graph would have letters of its own in memory.
+#[must_use]
+pub fn font(size: f32) -> FontId {
+    FontId::proportional((size * 2.0).round() / 2.0)
 }
 
 /// A position at a side of a box.

@@ -1,10 +1,11 @@
 //! Frames around boxes of the graph: a title on a colored ground, which moves its boxes.
 
 use eframe::egui::{
-    self, Align2, Color32, FontId, Painter, PointerButton, Rect, Sense, Stroke, StrokeKind, TextEdit, Ui, pos2, vec2,
+    self, Align2, Color32, Painter, PointerButton, Rect, Sense, Stroke, StrokeKind, TextEdit, Ui, pos2, vec2,
 };
 
 use super::action::Action;
+use super::graph_box;
 use super::graph_panel::Graph;
 use crate::catalogue::Language;
 use crate::editing::edit::Edit;
@@ -51,7 +52,7 @@ impl Graph {
                 Stroke::new(1.0, color.gamma_multiply(0.6)),
                 StrokeKind::Inside,
             );
-            let font = FontId::proportional((14.0 * self.zoom).max(9.0));
+            let font = graph_box::font((14.0 * self.zoom).max(9.0));
             let ink: Color32 = ui.visuals().strong_text_color();
             painter.with_clip_rect(title.intersect(painter.clip_rect())).text(
                 title.left_center() + vec2(8.0 * self.zoom, 0.0),
