@@ -20,7 +20,7 @@ use super::panels::{Panels, Shown};
 use super::purpose::Purpose;
 use super::ramp_editor::RampEditor;
 use super::recovery_dialog::{self, RecoveryDialog};
-use super::relief::Ability;
+use super::relief_drawing::Ability;
 use super::relief_panel::ShownView;
 use super::system_dialog::SystemDialog;
 use super::{fonts, menu, theme};

@@ -39,6 +39,7 @@ pub mod ramp_editor;
 pub mod realism_panel;
 pub mod recovery_dialog;
 pub mod relief;
+pub mod relief_drawing;
 pub mod relief_panel;
 mod relief_part;
 mod relief_pipelines;

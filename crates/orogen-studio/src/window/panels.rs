@@ -11,7 +11,7 @@ use super::graph_panel::Graph;
 use super::inspector::Inspector;
 use super::map_panel::MapPanel;
 use super::realism_panel::RealismPanel;
-use super::relief::Ability;
+use super::relief_drawing::Ability;
 use super::relief_panel::ReliefPanel;
 use super::start_page::StartPage;
 use super::text_panel::TextPanel;

@@ -9,7 +9,7 @@ use eframe::egui_wgpu::Callback;
 use super::action::Action;
 use super::label::draft;
 use super::light::{Block, Light};
-use super::relief::{Ability, Drawing, PictureId, Scene};
+use super::relief_drawing::{Ability, Drawing, PictureId, Scene};
 use super::tools::{Projection, Tools};
 use super::{legend, tool_row};
 use crate::catalogue::Language;

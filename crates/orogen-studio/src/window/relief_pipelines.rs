@@ -4,7 +4,7 @@ use eframe::egui_wgpu::wgpu;
 use orogen::gpu::render::LightShader;
 
 use super::mesh::Vertex;
-use super::relief::{Ability, COLOR, POSITIONS};
+use super::relief_drawing::{Ability, COLOR, POSITIONS};
 
 /// The shaders of the 3D view, and the layouts of what they read.
 pub struct Pipelines {
