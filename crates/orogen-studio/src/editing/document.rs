@@ -266,7 +266,8 @@ impl Document {
         if !self.is_valid() {
             return Err(fault("the recipe's text has errors; mend them first".into()));
         }
-        if let Some(name) = self.kept.blocks(edit) {
+        if let Some(name) = edit.changed().into_iter().find(|name| self.kept.locked.iter().any(|locked| locked == name))
+        {
             return Err(fault(format!("`{name}` is locked; unlock it in the menu of its box first")));
         }
         let (mut text, mut recipe) = (self.text().to_owned(), self.recipe.clone());

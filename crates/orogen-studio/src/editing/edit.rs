@@ -109,6 +109,20 @@ impl Edit {
         }
     }
 
+    /// The nodes that the edit changes or removes; a lock protects them from it.
+    #[must_use]
+    pub fn changed(&self) -> Vec<&str> {
+        match self {
+            Edit::Param { node, .. }
+            | Edit::Reset { node, .. }
+            | Edit::Connect { node, .. }
+            | Edit::Stroke { node, .. } => vec![node],
+            Edit::Delete(names) => names.iter().map(String::as_str).collect(),
+            Edit::Several(edits) => edits.iter().flat_map(Edit::changed).collect(),
+            _ => Vec::new(),
+        }
+    }
+
     /// The name of the gesture that the edit is part of: successive edits of one value are undone together.
     #[must_use]
     pub fn gesture(&self) -> Option<String> {

@@ -7,8 +7,6 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value};
 
-use super::edit::Edit;
-
 /// What is kept.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -114,21 +112,6 @@ impl Kept {
             locked: follow(&self.locked),
         }
     }
-
-    /// The locked node that an edit would change.
-    #[must_use]
-    pub fn blocks(&self, edit: &Edit) -> Option<&str> {
-        let is_locked = |name: &String| self.locked.iter().find(|locked| *locked == name).map(String::as_str);
-        match edit {
-            Edit::Param { node, .. }
-            | Edit::Reset { node, .. }
-            | Edit::Connect { node, .. }
-            | Edit::Stroke { node, .. } => is_locked(node),
-            Edit::Delete(names) => names.iter().find_map(is_locked),
-            Edit::Several(edits) => edits.iter().find_map(|edit| self.blocks(edit)),
-            _ => None,
-        }
-    }
 }
 
 /// A value of the document; the items of a list are on lines of their own.
@@ -156,62 +139,5 @@ fn item(value: &Json) -> Value {
         }
         // Absent values are not written.
         Json::Null => "".into(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::editing::document::Document;
-
-    const TEXT: &str = "orogen = 1\n# The land.\n[nodes.hills]\nop = \"fbm\"\n[nodes.soft]\nop = \"blur\"\nsource = \"hills\"\n[outputs]\nheight = \"soft\"\n";
-
-    fn kept() -> Kept {
-        let export = KeptExport {
-            kind: "layer".into(),
-            file: "a \"b\".tif".into(),
-            size: Some(512),
-            part: Some([1.5, -2.0, 1000.0]),
-            options: [("bits".to_owned(), "16".to_owned())].into(),
-            ..KeptExport::default()
-        };
-        let frame = Frame { title: "基础".into(), nodes: vec!["hills".into(), "soft".into()] };
-        Kept { exports: vec![export.clone(), export], frames: vec![frame], locked: vec!["hills".into()] }
-    }
-
-    #[test]
-    fn what_is_kept_is_in_the_text_and_comes_back() {
-        let mut document = Document::new("test", TEXT.to_owned()).unwrap();
-        let recipe = document.recipe().clone();
-        document.apply(&Edit::Keep(kept())).unwrap();
-        assert!(document.is_valid() && *document.kept() == kept(), "{}", document.text());
-        assert_eq!(*document.recipe(), recipe, "it has no effect on the world");
-        document.apply(&Edit::Keep(Kept::default())).unwrap();
-        assert_eq!(document.text(), TEXT);
-        assert!(document.undo() && *document.kept() == kept());
-        for broken in ["studio = 1\n", "[studio]\nexports = 3\n", "[studio]\nlater = true\n"] {
-            assert_eq!(Kept::of(broken), Kept::default());
-        }
-    }
-
-    #[test]
-    fn it_follows_renamed_and_deleted_nodes_and_locked_ones_stay() {
-        let mut document = Document::new("test", TEXT.to_owned()).unwrap();
-        document.apply(&Edit::Keep(kept())).unwrap();
-        document.apply(&Edit::Rename { from: "hills".into(), to: "land".into() }).unwrap();
-        assert_eq!(document.kept().locked, ["land"]);
-        assert_eq!(document.kept().frames[0].nodes, ["land", "soft"]);
-        let blocked = [
-            Edit::Delete(vec!["soft".into(), "land".into()]),
-            Edit::Reset { node: "land".into(), key: "gain".into() },
-            Edit::Connect { node: "land".into(), input: "mask".into(), source: orogen::declare::Input::Value(0.0) },
-        ];
-        for edit in blocked {
-            let error = document.apply(&edit).unwrap_err().to_string();
-            assert!(error.contains("`land` is locked"), "{error}");
-        }
-        document.apply(&Edit::Delete(vec!["soft".into()])).unwrap();
-        assert_eq!(document.kept().frames[0].nodes, ["land"]);
-        assert!(document.text().contains("nodes = [\"land\"]"), "{}", document.text());
     }
 }

@@ -21,4 +21,6 @@ mod thinning;
 pub mod variants;
 
 #[cfg(test)]
+mod kept_tests;
+#[cfg(test)]
 mod tests;

@@ -85,3 +85,16 @@ pub enum Action {
     /// Shows a line of the text.
     GoToLine(usize),
 }
+
+impl Action {
+    /// The action for a file that was chosen.
+    #[must_use]
+    pub fn of_file(purpose: Purpose, path: PathBuf) -> Action {
+        match purpose {
+            Purpose::Open => Action::Open(path),
+            Purpose::Save => Action::Save(path),
+            Purpose::OpenPalette => Action::OpenPalette(path),
+            Purpose::SavePalette => Action::SavePalette(path),
+        }
+    }
+}

@@ -85,7 +85,7 @@ impl FileDialog {
         if let Some(asks) = &self.asks {
             match asks.show(context, language) {
                 Some(true) => {
-                    actions.push(self.purpose.action(asks.path.clone()));
+                    actions.push(Action::of_file(self.purpose, asks.path.clone()));
                     return false;
                 }
                 Some(false) => self.asks = None,
@@ -159,7 +159,7 @@ impl FileDialog {
                 self.asks = Overwrite::of(&path);
             }
             if self.asks.is_none() {
-                actions.push(self.purpose.action(path));
+                actions.push(Action::of_file(self.purpose, path));
                 return false;
             }
         }

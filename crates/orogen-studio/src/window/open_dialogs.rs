@@ -81,7 +81,7 @@ impl OpenDialogs {
         // The system asked about the name that was typed, not about the one with an extension.
         match completed != path && completed.exists() {
             true => self.files = Some(FileDialog::asking(purpose, &completed)),
-            false => actions.push(purpose.action(completed)),
+            false => actions.push(Action::of_file(purpose, completed)),
         }
     }
 }

@@ -2,8 +2,6 @@
 
 use std::path::PathBuf;
 
-use super::action::Action;
-
 /// The purpose of choosing a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
@@ -43,17 +41,6 @@ impl Purpose {
     #[must_use]
     pub fn completed(self, path: PathBuf) -> PathBuf {
         if self.saves() && path.extension().is_none() { path.with_extension("toml") } else { path }
-    }
-
-    /// The action for a chosen file.
-    #[must_use]
-    pub fn action(self, path: PathBuf) -> Action {
-        match self {
-            Purpose::Open => Action::Open(path),
-            Purpose::Save => Action::Save(path),
-            Purpose::OpenPalette => Action::OpenPalette(path),
-            Purpose::SavePalette => Action::SavePalette(path),
-        }
     }
 
     /// Whether the file is written.
