@@ -37,9 +37,16 @@ impl Language {
         }
     }
 
-    /// A declared description, whose paragraphs are separated by empty lines.
+    /// A declared description, whose paragraphs are separated by empty lines. The marks of code in it are left out: the
+    /// window shows plain text.
     #[must_use]
     pub fn told(self, text: &str) -> Cow<'_, str> {
+        let told = self.marked(text);
+        if told.contains('`') { told.replace('`', "").into() } else { told }
+    }
+
+    /// A declared description with its marks of code.
+    fn marked(self, text: &str) -> Cow<'_, str> {
         match self {
             Language::English => text.trim().into(),
             Language::Chinese => {

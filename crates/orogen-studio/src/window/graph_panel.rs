@@ -104,6 +104,11 @@ impl Graph {
         self.wants_whole = true;
     }
 
+    /// Whether the whole graph is shown, because the user has not moved it.
+    pub(super) fn is_whole(&self) -> bool {
+        self.fitted.is_some()
+    }
+
     /// Converts a position in the panel to the graph.
     pub(super) fn to_graph(&self, at: Pos2) -> Pos2 {
         ((at - self.offset) / self.zoom).to_vec2().to_pos2()

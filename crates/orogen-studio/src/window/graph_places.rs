@@ -62,6 +62,8 @@ impl Graph {
             self.wants_whole = true;
             return;
         }
+        // A graph that is shown whole stays so.
+        self.wants_whole |= self.is_whole() && found.iter().any(Option::is_none);
         let mut taken: Vec<Area> = Vec::new();
         let is_old: Vec<bool> = self.scene.boxes.iter().map(|block| before.contains(&self.key(block))).collect();
         // Boxes that existed before keep their positions; others get a free one.

@@ -240,6 +240,30 @@ fn the_whole_graph_is_in_its_panel() {
 }
 
 #[test]
+fn a_new_node_is_in_the_panel_of_the_graph() {
+    let folder = TestFolder::new("studio-new-node").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until_done(&mut harness);
+    harness.get_by_label("node terrain").click();
+    harness.run_steps(3);
+    for op in ["blur", "terrace", "thermal", "warp"] {
+        press(&mut harness, Modifiers::COMMAND, Key::Space);
+        harness.event(Event::Text(op.to_owned()));
+        harness.run_steps(3);
+        press(&mut harness, Modifiers::NONE, Key::Enter);
+        harness.run_steps(4);
+        // What is outside of the panel is cut off.
+        let sides = |name: &str| harness.get_by_label(name).rect().size();
+        let boxes = ["noise", "terrain", op].map(|node| sides(&format!("node {node}")).x);
+        let widest = boxes.into_iter().fold(sides("output box height").x, f32::max);
+        assert!(
+            boxes.iter().all(|own| *own > 0.9 * widest) && sides("output box height").x > 0.9 * widest,
+            "{op}: {boxes:?}"
+        );
+    }
+}
+
+#[test]
 fn panels_are_hidden_and_a_small_window_shows_the_land() {
     let folder = TestFolder::new("studio-panels").unwrap();
     let mut harness = window(&folder, Some("classic"), Language::English);
