@@ -34,6 +34,8 @@ pub struct Look {
     pub sun: [f64; 2],
     /// The interval of contours in metres; 0 chooses a round one that suits the land. No contours if `None`.
     pub contours: Option<f64>,
+    /// Whether rivers and lakes are shown.
+    pub rivers: bool,
     /// Number of samples along the longer side of the finest picture.
     pub finest: usize,
     /// The part of the world.
@@ -96,6 +98,7 @@ impl Studio {
         self.look = Look {
             sun: self.look.sun,
             contours: self.look.contours,
+            rivers: self.look.rivers,
             finest: self.look.finest,
             ..Look::of(document.recipe())
         };
@@ -211,6 +214,7 @@ impl Studio {
             coloring: self.look.coloring.clone(),
             sun: self.look.sun,
             contours: self.look.contours,
+            rivers: self.look.rivers,
             finest: self.look.finest,
         }
     }
@@ -385,6 +389,7 @@ impl Look {
             coloring: Coloring::Own,
             sun: [315.0, 40.0],
             contours: None,
+            rivers: true,
             finest: 1024,
             region: Region::of(recipe.world.size, recipe.world.cell),
         }

@@ -18,7 +18,7 @@ pub mod grow;
 pub mod map;
 mod map_names;
 mod map_options;
-mod map_water;
+pub mod map_water;
 #[doc(hidden)]
 pub mod noise;
 #[doc(hidden)]

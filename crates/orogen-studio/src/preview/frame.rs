@@ -9,6 +9,7 @@ use orogen::{Grid, Window};
 use super::colors::Colors;
 use super::contours::Contours;
 use super::legend::Legend;
+use super::rivers::Rivers;
 use super::statistics::Statistics;
 
 /// The identity of a picture: the request, the number of samples along the width, and the time.
@@ -53,6 +54,8 @@ pub struct Frame {
     pub legend: Legend,
     /// Colors with relief shading, like on maps.
     pub shaded: Vec<u8>,
+    /// The rivers and lakes that are painted on it, if requested.
+    pub rivers: Option<Arc<Rivers>>,
     /// Contour lines of the heights, if requested.
     pub contours: Option<Arc<Contours>>,
     /// How much of the sun each sample sees, 0 to 255. Two bytes per sample: for the ground, and for the surface of

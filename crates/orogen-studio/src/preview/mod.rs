@@ -14,6 +14,7 @@ pub mod ramp;
 pub mod region;
 pub mod request;
 pub mod ring;
+pub mod rivers;
 pub mod stages;
 pub mod statistics;
 pub mod strip;

@@ -28,6 +28,8 @@ pub struct Request {
     pub finest: usize,
     /// The interval of contours in metres; 0 chooses a round one that suits the land. Without contours if `None`.
     pub contours: Option<f64>,
+    /// Whether rivers and lakes are painted.
+    pub rivers: bool,
     /// The finest picture of the same land with other colors or light; its samples are reused.
     pub land: Option<Arc<Frame>>,
 }
@@ -46,6 +48,7 @@ impl Request {
             sun: [315.0, 40.0],
             finest: 1024,
             contours: None,
+            rivers: false,
             land: None,
         }
     }

@@ -59,7 +59,10 @@ impl Ring {
             Some(heights) => Arc::clone(heights),
             None => Arc::new(grid(world, &request.surface, window, progress)?),
         };
-        let albedo = albedo(world, request, frame, &heights, progress)?;
+        let mut albedo = albedo(world, request, frame, &heights, progress)?;
+        if let Some(rivers) = &frame.rivers {
+            rivers.paint(window, &mut albedo);
+        }
         progress.check()?;
         let sea_level = frame.sea_level as f32;
         let light = world.install(|| {

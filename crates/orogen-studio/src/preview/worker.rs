@@ -17,6 +17,7 @@ use super::colors::Colors;
 use super::contours::Contours;
 use super::frame::{Frame, Quality};
 use super::request::Request;
+use super::rivers::Rivers;
 use super::stages::{self, Stage};
 use super::statistics::Statistics;
 use super::sunlight::sunlight;
@@ -164,7 +165,9 @@ fn make(
             kind: land.kind,
             memory: Arc::new(world.budget().reserve(Frame::memory(land.window()))?),
         };
-        tell_of(paint(&world, request, Quality::Fine, samples, progress)?);
+        let frame = paint(&world, request, Quality::Fine, samples, progress)?;
+        let known = land.rivers.clone();
+        tell_of(with_rivers(&world, request, frame, known, progress)?);
         return Ok(());
     }
     let stages = stages::of(&world, request)?;
@@ -195,9 +198,42 @@ fn make(
             Err(error) if stage.quality == Quality::Draft && error.kind() != ErrorKind::Cancelled => continue,
             Err(error) => return Err(error),
         };
+        let has_rivers = frame.quality == Quality::Fine && request.rivers && Rivers::are_in(world.recipe());
+        let last = has_rivers.then(|| frame.clone());
         tell_of(frame);
+        // The land is shown before its rivers are found.
+        if let Some(frame) = last {
+            tell_of(with_rivers(world, request, frame, None, progress)?);
+        }
     }
     Ok(())
+}
+
+/// A picture with its rivers and lakes, if they are requested. `known` are those that were found before.
+fn with_rivers(
+    world: &World,
+    request: &Request,
+    mut frame: Frame,
+    known: Option<Arc<Rivers>>,
+    progress: &Progress,
+) -> Result<Frame> {
+    if !request.rivers || !Rivers::are_in(world.recipe()) {
+        return Ok(frame);
+    }
+    let rivers = match known {
+        Some(rivers) => rivers,
+        None => match Rivers::of(world, &frame.heights, &progress.part(0.0)) {
+            Ok(rivers) => Arc::new(rivers),
+            Err(error) if error.kind() == ErrorKind::Cancelled => return Err(error),
+            // Without the memory for rivers there is the land alone.
+            Err(_) => return Ok(frame),
+        },
+    };
+    let window = *frame.window();
+    rivers.paint(&window, &mut frame.albedo);
+    rivers.paint(&window, &mut frame.shaded);
+    frame.rivers = Some(rivers);
+    Ok(frame)
 }
 
 /// Opens the recipe of a request, or a draft of it.
@@ -277,6 +313,7 @@ fn paint(world: &World, request: &Request, quality: Quality, samples: Samples, p
         albedo,
         legend,
         shaded,
+        rivers: None,
         contours: contours?.map(Arc::new),
         light,
         sea_level,

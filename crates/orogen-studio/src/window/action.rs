@@ -46,6 +46,8 @@ pub enum Action {
     Sun([f64; 2]),
     /// Sets the interval of contours in metres; 0 chooses one that suits the land. `None` switches contours off.
     Contours(Option<f64>),
+    /// Sets whether rivers and lakes are shown.
+    Rivers(bool),
     /// Keeps a camera of the 3D view.
     KeepView([f32; 6]),
     /// Forgets a kept camera.

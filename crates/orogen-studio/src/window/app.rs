@@ -362,6 +362,7 @@ impl App {
                     Action::GoTo(step) => drop(studio.go_to(step)),
                     Action::Sun(sun) => studio.look.sun = sun,
                     Action::Contours(interval) => studio.look.contours = interval,
+                    Action::Rivers(are_shown) => studio.look.rivers = are_shown,
                     Action::Refine(windows) => studio.refine(windows),
                     Action::Finest(finest) => studio.look.finest = finest,
                     Action::Region(region) => studio.look.region = region,

@@ -453,8 +453,14 @@ fn suiting_times(frame: &Frame) -> f64 {
     times.floor().clamp(1.0, MAX_TIMES)
 }
 
-/// The switch for contours and, if they are on, a field for their interval; 0 chooses one that suits the land.
+/// The switches for rivers and contours and, if these are on, a field for their interval; 0 chooses one that suits the
+/// land.
 pub fn contours(ui: &mut Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) {
+    let mut rivers = studio.look.rivers;
+    let switch = ui.toggle_value(&mut rivers, language.text("relief.rivers"));
+    if switch.on_hover_text(language.text("relief.rivers_help")).clicked() {
+        actions.push(Action::Rivers(rivers));
+    }
     let own = studio.look.contours;
     let switch = ui.selectable_label(own.is_some(), language.text("relief.contours"));
     if switch.clicked() {
