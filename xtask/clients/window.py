@@ -180,12 +180,17 @@ class Window:
         return found
 
     def press(self, name, role=None, where=None, seen=None):
-        """Clicks a control where it stands still: dialogs are placed when their size is known. Clicks again if no
-        effect is seen for long: where a picture takes a second, a press and its release are no click."""
-        control = self.control(name, role, where)
-        while (again := self.control(name, role, where)).place != control.place:
-            control = again
-        self.click_until(control.middle, seen)
+        """Clicks a control where it stands still: dialogs are placed when their size is known. Clicks again, where it
+        is then, if no effect is seen for long: where a picture takes a second, a press and its release are no click,
+        and a dialog may get another size late."""
+        for _ in range(TRIES):
+            control = self.control(name, role, where)
+            while (again := self.control(name, role, where)).place != control.place:
+                control = again
+            self.click(control.middle)
+            if seen is None or until(seen, PATIENCE / TRIES):
+                return True
+        return False
 
     def click_until(self, place, seen=None):
         """Clicks a place until an effect is seen."""
