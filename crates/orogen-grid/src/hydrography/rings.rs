@@ -27,8 +27,9 @@ pub fn nested(rings: Vec<&Path>) -> Vec<Vec<Path>> {
     parts
 }
 
-/// Whether a ring contains a point (even-odd rule).
-pub(super) fn holds(ring: &Path, [x, y]: [f64; 2]) -> bool {
+/// Whether a ring, which repeats its first point, contains a point (even-odd rule).
+#[must_use]
+pub fn holds(ring: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let mut inside = false;
     for pair in ring.windows(2) {
         let ([ax, ay], [bx, by]) = (pair[0], pair[1]);

@@ -1,6 +1,7 @@
 //! What a drawn line or area does to the land.
 
 use orogen::declare::Input;
+use orogen::grid::hydrography::rings::holds;
 use orogen::recipe::Recipe;
 use orogen::value::Value;
 
@@ -174,8 +175,9 @@ impl Land<'_> {
         let places = (0..PLACES).flat_map(|j| {
             (0..PLACES).map(move |i| [west + (east - west) * share(i), north + (south - north) * share(j)])
         });
+        let ring: Vec<[f64; 2]> = points.iter().chain(points.first()).copied().collect();
         let heights: Vec<f64> = places
-            .filter(|at| is_inside(points, *at))
+            .filter(|at| holds(&ring, *at))
             .filter_map(|at| (self.height)(at))
             .filter(|height| height.is_finite())
             .collect();
@@ -210,14 +212,6 @@ fn extent(points: &[[f64; 2]]) -> f64 {
     let [west, north, east, south] = bounds(points);
     let sides = [east - west, south - north];
     if points.len() > 2 { sides[0].min(sides[1]) } else { sides[0].max(sides[1]) }
-}
-
-/// Whether a position is within an area, by the even-odd rule.
-fn is_inside(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
-    let sides = points.iter().zip(points.iter().cycle().skip(1));
-    let crossed =
-        sides.filter(|([ax, ay], [bx, by])| (*ay > y) != (*by > y) && x < ax + (y - ay) / (by - ay) * (bx - ax));
-    crossed.count() % 2 == 1
 }
 
 #[cfg(test)]

@@ -2,8 +2,12 @@
 
 use orogen::export::features::options::FeatureOptions;
 use orogen::export::features::source::FeatureSource;
+use orogen::io::palette::Rgb;
 use orogen::jobs::map_water;
 use orogen::options::Options;
+use orogen::output::sheet::geometry::{Point, Size};
+use orogen::output::sheet::raster::draw_over;
+use orogen::output::sheet::scene::{Scene, Step};
 use orogen::recipe::Recipe;
 use orogen::{Grid, Progress, Result, Window, World};
 
@@ -17,7 +21,7 @@ const WIDTH: f64 = 2e-3;
 const THIN: [f64; 2] = [1.1, 1.0 / 450.0];
 
 /// The color of fresh water, sRGB.
-const COLOR: [f32; 3] = [58.0, 118.0, 172.0];
+const COLOR: Rgb = [58, 118, 172];
 
 /// How much of the ground is covered by water.
 const COVER: f32 = 0.9;
@@ -33,8 +37,8 @@ struct River {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Rivers {
     rivers: Vec<River>,
-    /// The shores of lakes, with islands: closed lines.
-    shores: Vec<Vec<[f64; 2]>>,
+    /// The parts of lakes: a shore and those of its islands, which are closed lines.
+    lakes: Vec<Vec<Vec<[f64; 2]>>>,
 }
 
 impl Rivers {
@@ -64,82 +68,35 @@ impl Rivers {
             points: river.points.iter().map(|[x, y, _]| source.place([*x, *y])).collect(),
             width: WIDTH * (river.drained.max(0.0) * sample).sqrt(),
         });
-        let shores = source.lakes.iter().flat_map(|lake| source.parts(&lake.parts)).flatten();
-        Ok(Rivers { rivers: rivers.collect(), shores: shores.collect() })
+        let lakes = source.lakes.iter().flat_map(|lake| source.parts(&lake.parts));
+        Ok(Rivers { rivers: rivers.collect(), lakes: lakes.collect() })
     }
 
     /// Paints them on the pixels of a window: red, green, blue and 255 for each sample.
     pub fn paint(&self, window: &Window, pixels: &mut [u8]) {
-        let mut cover = vec![0.0_f32; window.len()];
-        let sample =
-            |[east, south]: [f64; 2]| [east / window.cell - window.x as f64, south / window.cell - window.y as f64];
+        let at = |[east, south]: &[f64; 2]| {
+            // Samples are at the centers of pixels.
+            let place = |metres: f64, first: i64| (metres / window.cell - first as f64 + 0.5) as f32;
+            Point { x: place(*east, window.x), y: place(*south, window.y) }
+        };
+        let size = Size { width: window.width as f32, height: window.height as f32 };
+        let mut scene = Scene::new(size, "");
+        for lake in &self.lakes {
+            let ring = |ring: &Vec<[f64; 2]>| {
+                let mut places = ring.iter().map(at);
+                places.next().map(Step::Move).into_iter().chain(places.map(Step::Line)).collect::<Vec<Step>>()
+            };
+            scene.area(lake.iter().flat_map(ring).collect(), COLOR, COVER);
+        }
         let thin = THIN[0].max(THIN[1] * window.width.max(window.height) as f64);
         for river in &self.rivers {
-            let radius = (river.width / window.cell).max(thin) / 2.0;
-            let points: Vec<[f64; 2]> = river.points.iter().map(|at| sample(*at)).collect();
-            for ends in points.windows(2) {
-                line(&mut cover, window, [ends[0], ends[1]], radius);
-            }
+            let width = (river.width / window.cell).max(thin) as f32;
+            scene.lines(vec![river.points.iter().map(at).collect()], width, COLOR, COVER);
         }
-        let shores: Vec<Vec<[f64; 2]>> =
-            self.shores.iter().map(|shore| shore.iter().map(|at| sample(*at)).collect()).collect();
-        fill(&mut cover, window, &shores);
-        for (pixel, cover) in pixels.chunks_exact_mut(4).zip(&cover).filter(|(_, cover)| **cover > 0.0) {
-            for (channel, water) in pixel.iter_mut().zip(COLOR) {
-                let ground = f32::from(*channel);
-                *channel = (ground + (water - ground) * cover * COVER).round() as u8;
-            }
-        }
-    }
-}
-
-/// Covers the samples along a line, with a soft edge of one sample.
-fn line(cover: &mut [f32], window: &Window, [from, to]: [[f64; 2]; 2], radius: f64) {
-    let reach = radius + 1.0;
-    let range = |k: usize, count: usize| {
-        let low = (from[k].min(to[k]) - reach).floor().max(0.0);
-        let high = (from[k].max(to[k]) + reach).ceil().min(count as f64 - 1.0);
-        (low <= high).then_some(low as usize..=high as usize)
-    };
-    let (Some(columns), Some(rows)) = (range(0, window.width), range(1, window.height)) else { return };
-    let along = [to[0] - from[0], to[1] - from[1]];
-    let length = (along[0] * along[0] + along[1] * along[1]).max(1e-12);
-    for j in rows {
-        for i in columns.clone() {
-            let off = [i as f64 - from[0], j as f64 - from[1]];
-            let share = ((off[0] * along[0] + off[1] * along[1]) / length).clamp(0.0, 1.0);
-            let apart = libm::hypot(off[0] - share * along[0], off[1] - share * along[1]);
-            let part = (radius + 0.5 - apart).clamp(0.0, 1.0) as f32;
-            if let Some(own) = cover.get_mut(j * window.width + i) {
-                *own = own.max(part);
-            }
-        }
-    }
-}
-
-/// Covers the samples inside closed lines, by the even-odd rule.
-fn fill(cover: &mut [f32], window: &Window, rings: &[Vec<[f64; 2]>]) {
-    let mut crossings: Vec<Vec<f64>> = vec![Vec::new(); window.height];
-    for ring in rings {
-        for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
-            let (low, high) = (a[1].min(b[1]), a[1].max(b[1]));
-            let first = low.ceil().max(0.0) as usize;
-            let rows = crossings.iter_mut().enumerate().skip(first).take_while(|(j, _)| (*j as f64) < high);
-            for (j, crossed) in rows {
-                crossed.push(a[0] + (j as f64 - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
-            }
-        }
-    }
-    for (j, mut crossed) in crossings.into_iter().enumerate() {
-        crossed.sort_by(f64::total_cmp);
-        for ends in crossed.chunks_exact(2) {
-            let columns =
-                ends[0].ceil().max(0.0) as usize..(ends[1].floor() + 1.0).clamp(0.0, window.width as f64) as usize;
-            for i in columns {
-                if let Some(own) = cover.get_mut(j * window.width + i) {
-                    *own = 1.0;
-                }
-            }
+        let mut colors: Vec<u8> = pixels.as_chunks::<4>().0.iter().flat_map(|pixel| &pixel[..3]).copied().collect();
+        draw_over(&scene, 1.0, Point::default(), 0, window.width, &mut colors);
+        for (pixel, color) in pixels.as_chunks_mut::<4>().0.iter_mut().zip(colors.as_chunks::<3>().0) {
+            pixel[..3].copy_from_slice(color);
         }
     }
 }
@@ -160,9 +117,10 @@ mod tests {
     #[test]
     fn lines_and_areas_are_where_they_are_in_the_world() {
         // A river along the row 10, and a lake with an island.
-        let ring = |from: f64, to: f64| vec![[from, from], [to, from], [to, to], [from, to]];
+        let ring = |from: f64, to: f64| vec![[from, from], [to, from], [to, to], [from, to], [from, from]];
+        let island = ring(190.0, 210.0).into_iter().rev().collect();
         let river = River { points: vec![[0.0, 100.0], [1000.0, 100.0]], width: 5.0 };
-        let rivers = Rivers { rivers: vec![river], shores: vec![ring(150.0, 250.0), ring(190.0, 210.0)] };
+        let rivers = Rivers { rivers: vec![river], lakes: vec![vec![ring(150.0, 250.0), island]] };
         let is_wet = painted(&rivers);
         let at = |east: usize, south: usize| is_wet[south / 10 * 40 + east / 10 - 5];
         assert!(at(60, 100) && at(400, 100) && !at(60, 80) && !at(60, 120));
