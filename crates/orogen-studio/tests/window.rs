@@ -31,7 +31,6 @@ use orogen::declare::Stroke;
 use orogen::io::test_folder::TestFolder;
 use orogen::node::Node;
 use orogen_studio::catalogue::Language;
-use orogen_studio::editing::drawing::points_of;
 use orogen_studio::preview::coloring::Coloring;
 use orogen_studio::preview::frame::Quality;
 use orogen_studio::preview::legend::Legend;
@@ -262,46 +261,6 @@ fn click_at(harness: &mut Harness<'_, App>, at: Pos2) {
     harness.run_steps(30);
 }
 
-#[test]
-fn a_line_is_drawn_on_the_map_and_its_points_are_moved() {
-    let folder = TestFolder::new("studio-drawing").unwrap();
-    let mut harness = window(&folder, Some("classic"), Language::English);
-    until_done(&mut harness);
-    press(&mut harness, Modifiers::COMMAND, Key::Num2);
-    harness.get_by_label("Draw a line").click();
-    harness.run_steps(2);
-    let map = harness.get_by_label("map view").rect();
-    let at = |x: f32, y: f32| map.min + map.size() * egui::vec2(x, y);
-    for place in [at(0.4, 0.4), at(0.5, 0.6), at(0.6, 0.5)] {
-        click_at(&mut harness, place);
-    }
-    press(&mut harness, Modifiers::NONE, Key::Enter);
-    harness.get_by_label("Only keep the drawing").click();
-    harness.run_steps(3);
-    let points = |harness: &Harness<'_, App>| {
-        let recipe = studio(harness).document.recipe();
-        let named = recipe.nodes().iter().find(|named| named.name == "path").unwrap();
-        points_of(&named.node).unwrap()
-    };
-    let before = points(&harness);
-    assert!(before.len() == 3 && before[0][0] < before[1][0] && before[1][1] > before[2][1], "{before:?}");
-    assert_eq!(studio(&harness).selected, ["path"]);
-    // Its first point is dragged to the right.
-    harness.drag_at(at(0.4, 0.4));
-    harness.run_steps(2);
-    for step in 1..=5 {
-        harness.event(Event::PointerMoved(at(0.4, 0.4) + egui::vec2(8.0 * step as f32, 0.0)));
-        harness.run_steps(1);
-    }
-    harness.drop_at(at(0.4, 0.4) + egui::vec2(40.0, 0.0));
-    harness.run_steps(3);
-    let after = points(&harness);
-    assert!(after[0][0] > before[0][0] && after[1..] == before[1..], "{before:?} {after:?}");
-    // The drag is one step.
-    press(&mut harness, Modifiers::COMMAND, Key::Z);
-    assert_eq!(points(&harness), before);
-}
-
 /// Moves the pointer along a line with its button pressed.
 fn drag_along(harness: &mut Harness<'_, App>, line: &[Pos2]) {
     let (first, last) = (line[0], line[line.len() - 1]);
@@ -324,58 +283,6 @@ fn strokes<'a>(harness: &'a Harness<'_, App>, name: &str) -> &'a [Stroke] {
         Some(Node::Paint(paint)) => paint.strokes.list(),
         _ => &[],
     }
-}
-
-#[test]
-fn land_and_a_mask_are_painted_on_the_map_and_each_stroke_is_undone_in_one_step() {
-    let folder = TestFolder::new("studio-brush").unwrap();
-    let mut harness = window(&folder, Some("classic"), Language::English);
-    until_done(&mut harness);
-    press(&mut harness, Modifiers::COMMAND, Key::Num2);
-    harness.get_by_label("Raise").click();
-    harness.run_steps(2);
-    let before = studio(&harness).document.text().to_owned();
-    let land = studio(&harness).frame.clone().unwrap();
-    let map = harness.get_by_label("map view").rect();
-    let at = |x: f32, y: f32| map.min + map.size() * egui::vec2(x, y);
-    let line: Vec<Pos2> = (0..=12).map(|k| at(0.4 + 0.02 * k as f32, 0.5)).collect();
-    drag_along(&mut harness, &line);
-    let text = studio(&harness).document.text().to_owned();
-    let has = |part: &str| text.contains(part);
-    assert!(has("[nodes.paint]\nop = \"paint\"\nbackground = ") && has("height = \"paint\""), "{text}");
-    assert_eq!(studio(&harness).selected, ["paint"]);
-    let stroke = strokes(&harness, "paint")[0].clone();
-    assert!(stroke.points.len() == 2 && stroke.points[0][0] < stroke.points[1][0], "{stroke:?}");
-    // The map shows the stroke.
-    until_done(&mut harness);
-    let raised = studio(&harness).frame.clone().unwrap();
-    let middle = [0, 1].map(|k| (stroke.points[0][k] + stroke.points[1][k]) / 2.0);
-    let [low, high] = [&land, &raised].map(|frame| f64::from(frame.at(middle).unwrap()[1]));
-    assert!(stroke.value > 0.0 && (high - low - stroke.value).abs() < 1e-2, "{low} {high} {stroke:?}");
-    // A key makes the brush larger, and a dab lowers the land.
-    harness.get_by_label("Lower").click();
-    harness.run_steps(2);
-    harness.event(Event::PointerMoved(at(0.5, 0.4)));
-    harness.run_steps(2);
-    press(&mut harness, Modifiers::NONE, Key::CloseBracket);
-    click_at(&mut harness, at(0.5, 0.4));
-    let dab = strokes(&harness, "paint")[1].clone();
-    assert!(dab.points.len() == 1 && dab.value == -stroke.value && dab.radius > stroke.radius, "{dab:?}");
-    // A mask is a separate node, which the map shows.
-    harness.get_by_label("Paint").click();
-    harness.run_steps(2);
-    drag_along(&mut harness, &line);
-    assert_eq!((strokes(&harness, "paint2").len(), studio(&harness).look.layer.as_str()), (1, "paint2"));
-    until_done(&mut harness);
-    let center = strokes(&harness, "paint2")[0].points[0];
-    assert_eq!(studio(&harness).frame.as_ref().unwrap().at(center).unwrap()[0], 1.0);
-    assert!(harness.render().is_ok());
-    // Each stroke is one step.
-    press(&mut harness, Modifiers::COMMAND, Key::Z);
-    press(&mut harness, Modifiers::COMMAND, Key::Z);
-    assert_eq!(studio(&harness).document.text(), text);
-    press(&mut harness, Modifiers::COMMAND, Key::Z);
-    assert_eq!(studio(&harness).document.text(), before);
 }
 
 /// From a change of a slider to the first picture: typical times are far below these limits.
