@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 use orogen::declare::Input;
 use orogen::io::dem::prepared::DEFAULT_MEMORY;
@@ -42,6 +43,10 @@ pub struct Look {
     pub region: Region,
 }
 
+/// Maximum time for which the window waits for the picture of a change. Less than a frame takes where a CPU draws: the
+/// change is seen one frame earlier.
+const WAIT: Duration = Duration::from_millis(40);
+
 /// The state of the studio.
 pub struct Studio {
     /// The edited recipe.
@@ -59,6 +64,8 @@ pub struct Studio {
     /// Whether small pictures of the nodes are made.
     pub has_thumbnails: bool,
     worker: Worker,
+    /// Whether the first picture of the latest request took so little time that the window can wait for the next one.
+    is_quick: bool,
     /// Rings of detail in the 3D view.
     detail: Detail,
     /// The revision and region for which the current small pictures were requested.
@@ -86,6 +93,7 @@ impl Studio {
             has_thumbnails: true,
             detail: Detail::new(Arc::clone(&wake)),
             worker: Worker::new(session, wake),
+            is_quick: true,
             asked_small: None,
             asked: None,
             land: None,
@@ -171,11 +179,11 @@ impl Studio {
         self.selected.retain(|name| names.contains(name.as_str()));
     }
 
-    /// Requests pictures if the recipe or the look has changed since the last time.
-    pub fn refresh(&mut self) {
+    /// Requests pictures if the recipe or the look has changed since the last time. Returns whether it did.
+    pub fn refresh(&mut self) -> bool {
         let recipe = self.document.recipe();
         if !recipe.outputs().any(|_| true) {
-            return;
+            return false;
         }
         // A layer that no longer exists is not shown any more.
         if !has_layer(recipe, &self.look.layer) {
@@ -187,12 +195,12 @@ impl Studio {
         self.refresh_thumbnails();
         let now = (self.document.revision(), self.look.clone());
         if self.asked.as_ref() == Some(&now) {
-            return;
+            return false;
         }
         self.asked = Some(now);
         self.detail.cancel();
         if !self.document.is_valid() {
-            return;
+            return false;
         }
         // With other colors or another sun, the samples can be reused.
         let is_same = |(revision, look, _): &&(u64, Look, Arc<Frame>)| {
@@ -200,6 +208,14 @@ impl Studio {
         };
         let land = self.land.as_ref().filter(is_same).map(|(.., frame)| Arc::clone(frame));
         self.worker.ask(Request { land, ..self.request() });
+        true
+    }
+
+    /// Waits for the first of the requested pictures if it is expected at once. Returns whether it is there.
+    pub fn wait_for_picture(&mut self) -> bool {
+        // An unexpectedly slow one is not waited for again.
+        self.is_quick = self.is_quick && self.worker.wait(WAIT);
+        self.is_quick && self.poll()
     }
 
     /// The request for pictures of the current text and look.
@@ -283,6 +299,9 @@ impl Studio {
             match event {
                 Event::Frame(frame) => {
                     let frame: Arc<Frame> = Arc::from(frame);
+                    if self.frame.as_ref().is_none_or(|shown| shown.request != frame.request) {
+                        self.is_quick = frame.seconds < WAIT.as_secs_f64();
+                    }
                     if let Some((revision, look)) = self.asked.as_ref().filter(|_| frame.quality == Quality::Fine) {
                         self.land = Some((*revision, look.clone(), Arc::clone(&frame)));
                     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use orogen::budget::Reservation;
 use orogen::export::LayerSource;
@@ -46,6 +46,8 @@ pub struct Worker {
     wake: Wake,
     sender: Sender<(u64, Event)>,
     receiver: Receiver<(u64, Event)>,
+    /// An event that was waited for.
+    early: Option<(u64, Event)>,
     /// The number of the last request.
     request: u64,
     running: Option<Progress>,
@@ -58,7 +60,7 @@ impl Worker {
     #[must_use]
     pub fn new(session: Session, wake: Wake) -> Worker {
         let (sender, receiver) = channel();
-        Worker { session, wake, sender, receiver, request: 0, running: None, share: Arc::default() }
+        Worker { session, wake, sender, receiver, early: None, request: 0, running: None, share: Arc::default() }
     }
 
     /// Requests pictures. An earlier request is cancelled. Returns the number of the request.
@@ -110,7 +112,10 @@ impl Worker {
 
     /// The events of the current request since the last call. Events of earlier requests are dropped.
     pub fn events(&mut self) -> Vec<Event> {
-        let events: Vec<Event> = std::iter::from_fn(|| self.receiver.try_recv().ok())
+        let early = self.early.take();
+        let events: Vec<Event> = early
+            .into_iter()
+            .chain(self.receiver.try_iter())
             .filter(|(request, _)| *request == self.request)
             .map(|(_, event)| event)
             .collect();
@@ -118,6 +123,18 @@ impl Worker {
             self.running = None;
         }
         events
+    }
+
+    /// Waits for an event of the current request, for `limit` at most. Returns whether there is one.
+    pub fn wait(&mut self, limit: Duration) -> bool {
+        let until = Instant::now() + limit;
+        while self.early.as_ref().is_none_or(|(request, _)| *request != self.request) {
+            match self.receiver.recv_timeout(until.saturating_duration_since(Instant::now())) {
+                Ok(event) => self.early = Some(event),
+                Err(_) => return false,
+            }
+        }
+        true
     }
 
     /// Whether a request is in progress.

@@ -1,5 +1,6 @@
 //! The application: lays out the panels, and carries out their actions.
 
+mod actions;
 mod commands;
 
 use std::path::{Path, PathBuf};
@@ -276,102 +277,6 @@ impl App {
         }
     }
 
-    /// Carries out an action.
-    fn act(&mut self, action: Action, context: &Context) {
-        match action {
-            Action::Command(command) => self.command(command, context),
-            Action::OpenPreset(name) => self.leave(Pending::Preset(name), context),
-            Action::Open(path) => self.leave(Pending::Open(path), context),
-            Action::OpenUnsaved(unsaved) => self.leave(Pending::Unsaved(unsaved), context),
-            Action::DropUnsaved(unsaved) => {
-                self.recovery.discard(&unsaved);
-                self.no_longer_offer(&unsaved);
-            }
-            Action::Save(path) => {
-                if self.save(&path)
-                    && let Some(pending) = self.after_save.take()
-                {
-                    self.go(pending, context);
-                }
-            }
-            Action::Language(language) => {
-                self.language = language;
-                self.settings.language = Some(language);
-                self.use_language(context);
-                self.remember();
-            }
-            Action::Theme(theme) => {
-                self.settings.theme = theme;
-                theme::set(context, theme);
-                self.remember();
-            }
-            Action::SystemDialogs(are_used) => {
-                self.settings.has_system_dialogs = are_used;
-                self.remember();
-            }
-            // It is remembered with what is remembered next, and when the window closes.
-            Action::Layout(layout) => self.settings.layout = layout,
-            Action::KeepView(view) => {
-                self.settings.views.push(view);
-                self.show_kept_views();
-            }
-            Action::DropView(nth) => {
-                let mut nth_of = 0..;
-                self.settings.views.retain(|_| nth_of.next() != Some(nth));
-                self.show_kept_views();
-            }
-            Action::Draw(op) => {
-                self.show_map();
-                self.panels.tools.draw_op(op);
-            }
-            Action::Brush(effect) => {
-                self.show_map();
-                self.panels.tools.take_brush(effect);
-            }
-            Action::Enter(group) => {
-                self.show_below(Below::Graph);
-                self.panels.graph.enter(&group);
-            }
-            Action::Copy(text) => context.copy_text(text),
-            Action::EditColors => self.edit_colors(),
-            Action::OpenPalette(path) => self.use_palette(RampEditor::open(&path)),
-            Action::SavePalette(path) => {
-                let saved = self.dialogs.ramp.as_ref().map_or(Ok(()), |ramp| ramp.save(&path));
-                self.say_failure(saved);
-            }
-            Action::Choose(purpose) => {
-                let name = self.dialogs.ramp.as_ref().map(|ramp| PathBuf::from(ramp.file_name()));
-                self.choose_file(purpose, name.as_deref());
-            }
-            Action::GoToLine(line) => {
-                self.show_below(Below::Text);
-                self.panels.text.go_to(line);
-            }
-            other => {
-                let Some(studio) = &mut self.studio else { return };
-                match other {
-                    Action::Edit(edit) => {
-                        let edited = studio.edit(&edit);
-                        self.say_failure(edited);
-                    }
-                    Action::Type(text) => studio.type_text(text),
-                    Action::EndGesture => studio.document.end_gesture(),
-                    Action::Select(names) => studio.selected = names,
-                    Action::Show(layer) => studio.look.layer = layer,
-                    Action::Color(coloring) => studio.look.coloring = coloring,
-                    Action::GoTo(step) => drop(studio.go_to(step)),
-                    Action::Sun(sun) => studio.look.sun = sun,
-                    Action::Contours(interval) => studio.look.contours = interval,
-                    Action::Rivers(are_shown) => studio.look.rivers = are_shown,
-                    Action::Refine(windows) => studio.refine(windows),
-                    Action::Finest(finest) => studio.look.finest = finest,
-                    Action::Region(region) => studio.look.region = region,
-                    _ => {}
-                }
-            }
-        }
-    }
-
     /// Opens a dialog for choosing a file that starts at a path: that of the system, or else an own one.
     fn choose_file(&mut self, purpose: Purpose, at: Option<&Path>) {
         if self.dialogs.is_choosing() {
@@ -471,6 +376,20 @@ impl App {
         }
     }
 
+    fn show_panels(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        Panel::top("menu")
+            .frame(theme::side(ui))
+            .show(ui, |ui| menu::show(ui, self.studio.as_ref(), &self.settings, self.language, actions));
+        let shown = Shown {
+            studio: self.studio.as_ref(),
+            settings: &self.settings,
+            gpu: self.gpu.as_ref(),
+            ability: self.ability,
+            language: self.language,
+        };
+        self.panels.show(ui, &shown, actions);
+    }
+
     /// Asks what to do with unsaved changes.
     fn ask(&mut self, context: &Context) {
         let (Some(pending), Some(studio)) = (self.pending.clone(), &self.studio) else { return };
@@ -500,6 +419,12 @@ impl App {
 }
 
 impl eframe::App for App {
+    /// The color of the panels, which have no fill of their own: where a CPU draws, a fill takes as much time as a
+    /// picture.
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
+    }
+
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
         self.look_at_device(&context, frame);
@@ -510,16 +435,7 @@ impl eframe::App for App {
         }
         actions.extend(command::pressed(&context).into_iter().map(Action::Command));
         Self::dropped(&context, &mut actions);
-        Panel::top("menu")
-            .show(ui, |ui| menu::show(ui, self.studio.as_ref(), &self.settings, self.language, &mut actions));
-        let shown = Shown {
-            studio: self.studio.as_ref(),
-            settings: &self.settings,
-            gpu: self.gpu.as_ref(),
-            ability: self.ability,
-            language: self.language,
-        };
-        self.panels.show(ui, &shown, &mut actions);
+        theme::on_cleared(ui, |ui| self.show_panels(ui, &mut actions));
         let view = self.shown_view();
         self.dialogs.show(&context, self.studio.as_ref().zip(view.as_ref()), &self.wake, self.language, &mut actions);
         self.ask(&context);
@@ -531,7 +447,10 @@ impl eframe::App for App {
             self.after_save = None;
         }
         if let Some(studio) = &mut self.studio {
-            studio.refresh();
+            if studio.refresh() && studio.wait_for_picture() {
+                // The panels are laid out again with the picture of the change, and drawn once.
+                context.request_discard("a new picture");
+            }
             self.recovery.keep(&studio.document);
             if let Some(frame) = studio.frame.as_ref().filter(|_| studio.is_done()) {
                 self.recovery.picture(&studio.document, || recovery_dialog::picture(frame));

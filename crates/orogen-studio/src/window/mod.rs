@@ -5,7 +5,6 @@
 pub mod action;
 pub mod analysis_panel;
 pub mod app;
-pub mod background;
 pub mod command;
 pub mod contour_lines;
 pub mod device;

@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, CentralPanel, Panel, Rect, RichText, Ui, ViewportBuilder, ViewportClass, ViewportId};
+use eframe::egui::{self, CentralPanel, Panel, RichText, Ui, ViewportBuilder, ViewportClass, ViewportId};
 use orogen::gpu::Gpu;
 
 use super::action::Action;
-use super::background::{Background, clear};
 use super::graph_panel::Graph;
 use super::inspector::Inspector;
 use super::map_panel::MapPanel;
@@ -17,7 +16,7 @@ use super::start_page::StartPage;
 use super::text_panel::TextPanel;
 use super::tools::Tools;
 use super::variants_panel::VariantsPanel;
-use super::{analysis_panel, status, tool_row};
+use super::{analysis_panel, status, theme, tool_row};
 use crate::catalogue::Language;
 use crate::preview::worker::Wake;
 use crate::settings::Settings;
@@ -104,14 +103,14 @@ impl Panels {
     pub fn show(&mut self, ui: &mut Ui, shown: &Shown, actions: &mut Vec<Action>) {
         let Shown { settings, gpu, language, .. } = *shown;
         let Some(studio) = shown.studio else {
-            CentralPanel::default().show(ui, |ui| self.start.show(ui, settings, language, actions));
+            CentralPanel::default().frame(theme::middle(ui)).show(ui, |ui| self.start.show(ui, settings, language, actions));
             return;
         };
         let mut layout = settings.layout;
-        Panel::bottom("status").show(ui, |ui| status::show(ui, studio, gpu, language));
+        Panel::bottom("status").frame(theme::side(ui)).show(ui, |ui| status::show(ui, studio, gpu, language));
         if layout.has_inspector {
             let most = (ui.available_width() * 0.6).clamp(220.0, 520.0);
-            let panel = Panel::right("inspector").default_size(layout.width.unwrap_or(300.0)).size_range(220.0..=most);
+            let panel = Panel::right("inspector").frame(theme::side(ui)).default_size(layout.width.unwrap_or(300.0)).size_range(220.0..=most);
             let inspector = panel.show(ui, |ui| {
                 egui::ScrollArea::vertical()
                     .auto_shrink(false)
@@ -122,24 +121,22 @@ impl Panels {
         if layout.has_below {
             self.show_below(ui, studio, &mut layout, language, actions);
         }
-        CentralPanel::default().frame(clear(ui)).show(ui, |ui| {
-            let background = Background::new(ui);
-            let covered = self.show_views(ui, (studio, shown), &mut layout, actions);
-            background.draw(ui, covered);
-        });
+        CentralPanel::default()
+            .frame(theme::middle(ui))
+            .show(ui, |ui| self.show_views(ui, (studio, shown), &mut layout, actions));
         if layout != settings.layout {
             actions.push(Action::Layout(layout));
         }
     }
 
-    /// Shows the views with their tools. Returns the rectangle that the land in 3D covers.
+    /// Shows the views with their tools.
     fn show_views(
         &mut self,
         ui: &mut Ui,
         (studio, shown): (&Studio, &Shown),
         layout: &mut Layout,
         actions: &mut Vec<Action>,
-    ) -> Rect {
+    ) {
         let Shown { ability, language, .. } = *shown;
         self.tools.begin(ui.ctx());
         tool_row::show(ui, "land", |ui| {
@@ -154,26 +151,25 @@ impl Panels {
         self.tools.settings(ui, studio, language);
         if layout.view == View::Map {
             self.map.show(ui, studio, &mut self.tools, language, actions);
-            return Rect::NOTHING;
+            return;
         }
         if layout.view == View::Both {
             let width = ui.available_width();
-            let panel = Panel::left("relief").frame(clear(ui)).resizable(true);
+            let panel = Panel::left("relief").frame(theme::middle(ui)).resizable(true);
             let panel = panel.default_size(layout.beside.unwrap_or(width / 2.0));
             let relief = panel
                 .size_range(BESIDE..=(width - BESIDE).max(BESIDE))
                 .show(ui, |ui| self.relief.show(ui, studio, &mut self.tools, (ability, language), actions));
             layout.beside = Some(relief.response.rect.width());
             CentralPanel::default()
-                .frame(clear(ui))
+                .frame(theme::middle(ui))
                 .show(ui, |ui| self.map.show(ui, studio, &mut self.tools, language, actions));
-            return relief.inner;
+            return;
         }
-        let covered = self.relief.show(ui, studio, &mut self.tools, (ability, language), actions);
+        self.relief.show(ui, studio, &mut self.tools, (ability, language), actions);
         if layout.view == View::Windows && self.show_window(ui, studio, language, actions) {
             layout.view = View::Relief;
         }
-        covered
     }
 
     /// Shows the map in a window of its own. Returns whether it was closed.
@@ -202,7 +198,7 @@ impl Panels {
         // The view keeps some room.
         let most = (available * 0.8).min(available - VIEW).max(60.0);
         let height = layout.height.unwrap_or(available * 0.36);
-        let panel = Panel::bottom("below").resizable(true).default_size(height).size_range(60.0..=most);
+        let panel = Panel::bottom("below").frame(theme::side(ui)).resizable(true).default_size(height).size_range(60.0..=most);
         let below = panel.show(ui, |ui| {
             ui.horizontal(|ui| {
                 for (below, name) in [

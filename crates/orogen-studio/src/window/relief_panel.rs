@@ -91,7 +91,7 @@ const PIXELS_PER_CELL: f64 = 2.0;
 const FLIGHT: f32 = 0.9;
 
 impl ReliefPanel {
-    /// Shows the view. Returns the rectangle that it covers.
+    /// Shows the view.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -99,14 +99,14 @@ impl ReliefPanel {
         tools: &mut Tools,
         (ability, language): (Option<Ability>, Language),
         actions: &mut Vec<Action>,
-    ) -> Rect {
+    ) {
         self.controls(ui, studio, language, actions);
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, language.text("spoken.relief")));
         let painter = ui.painter_at(rect);
         let Some(ability) = ability else {
             say(ui, rect, language.text("relief.no_graphics"));
-            return Rect::NOTHING;
+            return;
         };
         let is_dragging = studio.frame.as_ref().is_some_and(|frame| {
             let rings = studio.rings();
@@ -121,7 +121,7 @@ impl ReliefPanel {
             // The line at the bottom of the window says more about failures.
             let is_failed = studio.failure.is_some() || !studio.document.is_valid();
             say(ui, rect, language.text(if is_failed { "relief.nothing" } else { "relief.waiting" }));
-            return Rect::NOTHING;
+            return;
         };
         self.settle(frame);
         let pixels = ui.pixels_per_point();
@@ -163,7 +163,6 @@ impl ReliefPanel {
         if let Some(place) = aimed {
             self.camera.target = place;
         }
-        rect
     }
 
     /// The drawing at the resolution that the time of a frame allows: all pixels at rest.
