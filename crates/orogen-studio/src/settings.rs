@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use self::layout::Layout;
+use self::layout::{KeptLayout, Layout};
 use crate::catalogue::Language;
 use crate::files;
 
@@ -50,6 +50,8 @@ pub struct Settings {
     pub has_system_dialogs: bool,
     /// The layout of the window.
     pub layout: Layout,
+    /// Layouts that were kept under a name.
+    pub layouts: Vec<KeptLayout>,
 }
 
 /// The default of [`Settings::memory`].
@@ -68,6 +70,7 @@ impl Default for Settings {
             thumbnails: true,
             has_system_dialogs: true,
             layout: Layout::default(),
+            layouts: Vec::new(),
         }
     }
 }
@@ -84,6 +87,7 @@ impl Settings {
         settings.scale = if settings.scale.is_finite() { settings.scale.clamp(0.5, 3.0) } else { 1.0 };
         settings.memory = settings.memory.max(256 << 20);
         settings.layout = settings.layout.sound();
+        settings.layouts.iter_mut().for_each(|kept| kept.layout = kept.layout.sound());
         settings
     }
 
@@ -98,6 +102,15 @@ impl Settings {
     #[must_use]
     pub fn language(&self) -> Language {
         self.language.unwrap_or_else(Language::of_system)
+    }
+
+    /// Keeps the present layout under a name. An earlier one of that name is replaced.
+    pub fn keep_layout(&mut self, name: &str) {
+        let layout = self.layout;
+        match self.layouts.iter_mut().find(|kept| kept.name == name) {
+            Some(kept) => kept.layout = layout,
+            None => self.layouts.push(KeptLayout { name: name.to_owned(), layout }),
+        }
     }
 
     /// Records that a file was opened or saved.

@@ -13,7 +13,7 @@ pub enum View {
     Map,
     /// Both, side by side.
     Both,
-    /// The land in 3D, and the map in a window of its own.
+    /// One of them in the first window, and the other one in a window of its own.
     Windows,
 }
 
@@ -62,6 +62,8 @@ pub enum Below {
 pub struct Layout {
     /// What is shown of the land.
     pub view: View,
+    /// In two windows: whether the land in 3D has the window of its own, and not the map.
+    pub is_relief_apart: bool,
     /// The panel below the view.
     pub below: Below,
     /// Whether the panel below the view is shown.
@@ -76,10 +78,20 @@ pub struct Layout {
     pub beside: Option<f32>,
 }
 
+/// A layout that was kept under a name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct KeptLayout {
+    /// The name.
+    pub name: String,
+    /// The layout.
+    pub layout: Layout,
+}
+
 impl Default for Layout {
     fn default() -> Layout {
         Layout {
             view: View::default(),
+            is_relief_apart: false,
             below: Below::default(),
             has_below: true,
             has_inspector: true,

@@ -48,6 +48,12 @@ pub enum Action {
     Contours(Option<f64>),
     /// Sets whether rivers and lakes are shown.
     Rivers(bool),
+    /// Keeps the layout of the window under a name.
+    KeepLayout(String),
+    /// Forgets the kept layout of this name.
+    DropLayout(String),
+    /// Arranges the window anew.
+    UseLayout(Layout),
     /// Keeps a camera of the 3D view.
     KeepView([f32; 6]),
     /// Forgets a kept camera.

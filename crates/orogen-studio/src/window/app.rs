@@ -457,6 +457,8 @@ impl eframe::App for App {
             }
             let mark = if studio.document.is_changed() { "*" } else { "" };
             let title = format!("{mark}{} – Orogen", studio.document.title());
+            // Screen readers do not take it from the window.
+            context.accesskit_node_builder(egui::accesskit_root_id(), |root| root.set_label(title.as_str()));
             if self.title != title {
                 // Each command makes the window draw again, and some systems do not tell its title.
                 self.title.clone_from(&title);

@@ -5,7 +5,7 @@ use orogen::io::palette::named;
 
 use super::action::Action;
 use super::command::{self, Command, Menu};
-use super::swatches;
+use super::{layouts_menu, swatches};
 use crate::catalogue::Language;
 use crate::files;
 use crate::preview::coloring::Coloring;
@@ -23,7 +23,10 @@ pub fn show(ui: &mut Ui, studio: Option<&Studio>, settings: &Settings, language:
                     let mark = is_marked(entry.command, settings);
                     let mut button = egui::Button::selectable(mark, label(entry.command, studio, language));
                     if !keys.is_empty() {
-                        button = button.shortcut_text(keys);
+                        // Dimmed on the color of the selection, it would not be readable.
+                        let selected = ui.visuals().selection.stroke.color;
+                        let keys = egui::RichText::new(keys);
+                        button = button.shortcut_text(if mark { keys.color(selected) } else { keys });
                     }
                     let enabled = is_enabled(entry.command, studio);
                     if ui.add_enabled(enabled, button).clicked() {
@@ -47,6 +50,7 @@ pub fn show(ui: &mut Ui, studio: Option<&Studio>, settings: &Settings, language:
                 }
                 if menu == Menu::View {
                     ui.separator();
+                    layouts_menu::show(ui, settings, language, actions);
                     preferences(ui, settings, language, actions);
                 }
             });

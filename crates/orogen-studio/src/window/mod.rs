@@ -25,6 +25,7 @@ mod graph_wires;
 pub mod ground;
 pub mod inspector;
 pub mod label;
+pub mod layouts_menu;
 pub mod legend;
 pub mod light;
 pub mod map_panel;

@@ -62,7 +62,7 @@ const VIEW: f32 = 160.0;
 /// The least width of a view beside another one.
 const BESIDE: f32 = 160.0;
 
-/// Initial and minimum size of a window with the map.
+/// Initial and minimum size of the second window.
 const APART: [f32; 2] = [900.0, 700.0];
 const LEAST: [f32; 2] = [320.0, 240.0];
 
@@ -103,14 +103,19 @@ impl Panels {
     pub fn show(&mut self, ui: &mut Ui, shown: &Shown, actions: &mut Vec<Action>) {
         let Shown { settings, gpu, language, .. } = *shown;
         let Some(studio) = shown.studio else {
-            CentralPanel::default().frame(theme::middle(ui)).show(ui, |ui| self.start.show(ui, settings, language, actions));
+            CentralPanel::default()
+                .frame(theme::middle(ui))
+                .show(ui, |ui| self.start.show(ui, settings, language, actions));
             return;
         };
         let mut layout = settings.layout;
         Panel::bottom("status").frame(theme::side(ui)).show(ui, |ui| status::show(ui, studio, gpu, language));
         if layout.has_inspector {
             let most = (ui.available_width() * 0.6).clamp(220.0, 520.0);
-            let panel = Panel::right("inspector").frame(theme::side(ui)).default_size(layout.width.unwrap_or(300.0)).size_range(220.0..=most);
+            let panel = Panel::right("inspector")
+                .frame(theme::side(ui))
+                .default_size(layout.width.unwrap_or(300.0))
+                .size_range(220.0..=most);
             let inspector = panel.show(ui, |ui| {
                 egui::ScrollArea::vertical()
                     .auto_shrink(false)
@@ -145,45 +150,63 @@ impl Panels {
                     layout.view = view;
                 }
             }
+            if layout.view == View::Windows
+                && ui.button(language.text("view.swap")).on_hover_text(language.text("view.swap_help")).clicked()
+            {
+                layout.is_relief_apart = !layout.is_relief_apart;
+            }
             ui.separator();
             self.tools.choice(ui, language);
         });
         self.tools.settings(ui, studio, language);
-        if layout.view == View::Map {
-            self.map.show(ui, studio, &mut self.tools, language, actions);
-            return;
-        }
-        if layout.view == View::Both {
-            let width = ui.available_width();
-            let panel = Panel::left("relief").frame(theme::middle(ui)).resizable(true);
-            let panel = panel.default_size(layout.beside.unwrap_or(width / 2.0));
-            let relief = panel
-                .size_range(BESIDE..=(width - BESIDE).max(BESIDE))
-                .show(ui, |ui| self.relief.show(ui, studio, &mut self.tools, (ability, language), actions));
-            layout.beside = Some(relief.response.rect.width());
-            CentralPanel::default()
-                .frame(theme::middle(ui))
-                .show(ui, |ui| self.map.show(ui, studio, &mut self.tools, language, actions));
-            return;
-        }
-        self.relief.show(ui, studio, &mut self.tools, (ability, language), actions);
-        if layout.view == View::Windows && self.show_window(ui, studio, language, actions) {
-            layout.view = View::Relief;
+        match layout.view {
+            View::Relief => self.relief.show(ui, studio, &mut self.tools, (ability, language), actions),
+            View::Map => self.map.show(ui, studio, &mut self.tools, language, actions),
+            View::Both => {
+                let width = ui.available_width();
+                let panel = Panel::left("relief").frame(theme::middle(ui)).resizable(true);
+                let panel = panel.default_size(layout.beside.unwrap_or(width / 2.0));
+                let relief = panel
+                    .size_range(BESIDE..=(width - BESIDE).max(BESIDE))
+                    .show(ui, |ui| self.relief.show(ui, studio, &mut self.tools, (ability, language), actions));
+                layout.beside = Some(relief.response.rect.width());
+                CentralPanel::default()
+                    .frame(theme::middle(ui))
+                    .show(ui, |ui| self.map.show(ui, studio, &mut self.tools, language, actions));
+            }
+            View::Windows => self.show_windows(ui, (studio, shown), layout, actions),
         }
     }
 
-    /// Shows the map in a window of its own. Returns whether it was closed.
-    fn show_window(&mut self, ui: &Ui, studio: &Studio, language: Language, actions: &mut Vec<Action>) -> bool {
-        let title = format!("{} – {}", studio.document.title(), language.text("view.map"));
+    /// Shows one view here, and the other one in a window of its own.
+    fn show_windows(
+        &mut self,
+        ui: &mut Ui,
+        (studio, shown): (&Studio, &Shown),
+        layout: &mut Layout,
+        actions: &mut Vec<Action>,
+    ) {
+        let Shown { ability, language, .. } = *shown;
+        let is_relief_apart = layout.is_relief_apart;
+        let mut show = |ui: &mut Ui, is_relief: bool| match is_relief {
+            true => self.relief.show(ui, studio, &mut self.tools, (ability, language), actions),
+            false => self.map.show(ui, studio, &mut self.tools, language, actions),
+        };
+        show(ui, !is_relief_apart);
+        let of_view = language.text(if is_relief_apart { View::Relief.name() } else { View::Map.name() });
+        let title = format!("{} – {of_view}", studio.document.title());
         let builder = ViewportBuilder::default().with_title(title).with_inner_size(APART).with_min_inner_size(LEAST);
-        ui.ctx().show_viewport_immediate(ViewportId::from_hash_of("map"), builder, |ui, class| {
+        let is_closed = ui.ctx().show_viewport_immediate(ViewportId::from_hash_of("apart"), builder, |ui, class| {
             if class == ViewportClass::EmbeddedWindow {
                 // Systems without more windows show it within this one.
                 ui.set_min_size(LEAST.into());
             }
-            CentralPanel::default().show(ui, |ui| self.map.show(ui, studio, &mut self.tools, language, actions));
+            CentralPanel::default().show(ui, |ui| show(ui, is_relief_apart));
             ui.input(|input| input.viewport().close_requested())
-        })
+        });
+        if is_closed {
+            layout.view = if is_relief_apart { View::Map } else { View::Relief };
+        }
     }
 
     fn show_below(
@@ -198,7 +221,8 @@ impl Panels {
         // The view keeps some room.
         let most = (available * 0.8).min(available - VIEW).max(60.0);
         let height = layout.height.unwrap_or(available * 0.36);
-        let panel = Panel::bottom("below").frame(theme::side(ui)).resizable(true).default_size(height).size_range(60.0..=most);
+        let panel =
+            Panel::bottom("below").frame(theme::side(ui)).resizable(true).default_size(height).size_range(60.0..=most);
         let below = panel.show(ui, |ui| {
             ui.horizontal(|ui| {
                 for (below, name) in [

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use eframe::egui::{self, FontId, Key, PointerButton, Rect, Sense, Slider, Ui};
+use eframe::egui::{self, FontId, Key, PointerButton, Rect, Sense, Slider, Ui, WidgetInfo};
 use eframe::egui_wgpu::Callback;
 
 use super::action::Action;
@@ -102,7 +102,7 @@ impl ReliefPanel {
     ) {
         self.controls(ui, studio, language, actions);
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, language.text("spoken.relief")));
+        response.widget_info(|| WidgetInfo::labeled(egui::Role::Canvas, true, language.text("spoken.relief")));
         let painter = ui.painter_at(rect);
         let Some(ability) = ability else {
             say(ui, rect, language.text("relief.no_graphics"));
@@ -257,9 +257,11 @@ impl ReliefPanel {
             let azimuth = ui
                 .add(Slider::new(&mut sun[0], 0.0..=360.0).show_value(false))
                 .on_hover_text(language.text("relief.azimuth"));
+            azimuth.widget_info(|| WidgetInfo::slider(true, sun[0], language.text("relief.azimuth")));
             let altitude = ui
                 .add(Slider::new(&mut sun[1], 3.0..=90.0).show_value(false))
                 .on_hover_text(language.text("relief.altitude"));
+            altitude.widget_info(|| WidgetInfo::slider(true, sun[1], language.text("relief.altitude")));
             if azimuth.changed() || altitude.changed() {
                 self.sun = Some(sun);
             }
@@ -313,9 +315,7 @@ impl ReliefPanel {
                     }
                     let remove = ui.small_button("×").on_hover_text(language.text("relief.drop_view"));
                     let name = language.text("relief.drop_view");
-                    remove.widget_info(|| {
-                        egui::WidgetInfo::labeled(egui::Role::Button, true, format!("{name} {number}"))
-                    });
+                    remove.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, format!("{name} {number}")));
                     if remove.clicked() {
                         actions.push(Action::DropView(nth));
                     }

@@ -7,6 +7,9 @@ use crate::catalogue::Language;
 use crate::preview::frame::Quality;
 use crate::studio::Studio;
 
+/// Results of solvers below this size are not mentioned, in bytes.
+const KEPT: u64 = 1 << 20;
+
 /// Shows the progress of the picture, the time that it took, and which graphics card computes previews, if any.
 pub fn show(ui: &mut Ui, studio: &Studio, gpu: Option<&Gpu>, language: Language) {
     ui.horizontal(|ui| {
@@ -29,7 +32,12 @@ pub fn show(ui: &mut Ui, studio: &Studio, gpu: Option<&Gpu>, language: Language)
                 ui.weak(language.text("analysis.draft"));
             }
         }
-        ui.weak(orogen::grid::words::bytes(studio.session().kept_memory()));
+        let kept = studio.session().kept_memory();
+        if kept > KEPT {
+            let bytes = orogen::grid::words::bytes(kept);
+            ui.weak(language.fill("status.kept", &[("bytes", &bytes)]))
+                .on_hover_text(language.text("status.kept_help"));
+        }
         if let Some(gpu) = gpu {
             match gpu.failure() {
                 None => ui.weak(language.fill("status.device", &[("name", &gpu.adapter().name)])),

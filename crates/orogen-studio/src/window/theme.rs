@@ -1,8 +1,6 @@
 //! The colors and text sizes of the interface.
 
-use eframe::egui::{
-    Color32, Context, FontId, Frame, TextStyle, ThemePreference, Ui, UiBuilder, UiKind, UiStackInfo,
-};
+use eframe::egui::{Color32, Context, FontId, Frame, TextStyle, ThemePreference, Ui, UiBuilder, UiKind, UiStackInfo};
 
 use crate::settings::Theme;
 

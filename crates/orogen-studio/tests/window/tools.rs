@@ -1,6 +1,6 @@
 //! The tools for the land: in 3D, on the map, and on both side by side.
 
-use eframe::egui::{Event, Key, Modifiers, Pos2, vec2};
+use eframe::egui::{Event, Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use orogen::io::test_folder::TestFolder;
@@ -120,7 +120,56 @@ fn views_are_side_by_side_and_the_layout_is_remembered() {
     press(&mut harness, Modifiers::COMMAND, Key::Num9);
     harness.run_steps(3);
     assert!(harness.query_by_label("map view").is_some() && harness.query_by_label("relief view").is_some());
-    assert_eq!(Settings::read(Some(&folder)).layout.view, View::Windows);
+    let layout = |folder: &TestFolder| Settings::read(Some(folder)).layout;
+    assert_eq!((layout(&folder).view, layout(&folder).is_relief_apart), (View::Windows, false));
+    // Either view can have the window of its own, above the other one.
+    let area = |harness: &Harness<'_, App>, view: &str| harness.get_by_label(view).rect().area();
+    let before = ["map view", "relief view"].map(|view| area(&harness, view));
+    // The other window may cover the button.
+    harness.get_by_label("Swap").focus();
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    harness.run_steps(4);
+    let after = ["map view", "relief view"].map(|view| area(&harness, view));
+    assert!((before[0] < before[1]) != (after[0] < after[1]), "{before:?} {after:?}");
+}
+
+#[test]
+fn layouts_are_kept_under_a_name() {
+    let folder = TestFolder::new("studio-layouts").unwrap();
+    let mut harness = window(&folder, Some("classic"), Language::English);
+    until_done(&mut harness);
+    let open = |harness: &mut Harness<'_, App>| {
+        for label in ["View", "Layouts"] {
+            harness.get_by_label(label).click();
+            harness.run_steps(3);
+        }
+    };
+    let keep = |harness: &mut Harness<'_, App>, name: &str| {
+        open(harness);
+        let field = harness.get_by_role_and_label(Role::TextInput, "Name of this layout");
+        field.focus();
+        field.type_text(name);
+        harness.run_steps(2);
+        harness.get_by_label("Keep").click();
+        harness.run_steps(3);
+    };
+    press(&mut harness, Modifiers::COMMAND, Key::Num8);
+    keep(&mut harness, "two views");
+    let settings = Settings::read(Some(&folder));
+    assert_eq!((settings.layouts.len(), settings.layouts[0].name.as_str()), (1, "two views"));
+    open(&mut harness);
+    harness.get_by_label("Initial layout").click();
+    harness.run_steps(4);
+    assert!(harness.query_by_label("map view").is_none());
+    open(&mut harness);
+    harness.get_by_label("two views").click();
+    harness.run_steps(4);
+    assert!(harness.query_by_label("map view").is_some());
+    assert_eq!(Settings::read(Some(&folder)).layout, settings.layouts[0].layout);
+    open(&mut harness);
+    harness.get_by_label("Forget this layout two views").click();
+    harness.run_steps(2);
+    assert!(Settings::read(Some(&folder)).layouts.is_empty());
 }
 
 #[test]

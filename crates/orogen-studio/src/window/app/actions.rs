@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use eframe::egui::Context;
+use eframe::egui::PanelState;
 
+use super::{App, Pending};
+use crate::settings::layout::Below;
 use crate::window::action::Action;
 use crate::window::ramp_editor::RampEditor;
 use crate::window::theme;
-use super::{App, Pending};
-use crate::settings::layout::Below;
 
 impl App {
     /// Carries out an action.
@@ -46,6 +47,20 @@ impl App {
             }
             // It is remembered with what is remembered next, and when the window closes.
             Action::Layout(layout) => self.settings.layout = layout,
+            Action::KeepLayout(name) => {
+                self.settings.keep_layout(&name);
+                self.remember();
+            }
+            Action::DropLayout(name) => {
+                self.settings.layouts.retain(|kept| kept.name != name);
+                self.remember();
+            }
+            Action::UseLayout(layout) => {
+                self.settings.layout = layout;
+                // Panels that were shown before have the sizes of before.
+                context.data_mut(|data| data.remove_by_type::<PanelState>());
+                self.remember();
+            }
             Action::KeepView(view) => {
                 self.settings.views.push(view);
                 self.show_kept_views();
