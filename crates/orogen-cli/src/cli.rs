@@ -7,7 +7,7 @@ use orogen::Level;
 use crate::bar::{Mode, set_mode};
 use crate::command::{
     analyze, blocks, build, cache, check, compare, completions, devices, explain, export, fit, generate, graph, grow,
-    map, new, noise, ops, palettes, presets, refine, render, schema, studio, tilemap, variants,
+    locate, map, new, noise, ops, palettes, presets, refine, render, schema, studio, tilemap, variants,
 };
 use crate::failure::Failure;
 
@@ -35,6 +35,8 @@ enum Command {
     Build(build::Args),
     /// Measure a terrain: a table with reference values of real land, and a page of charts
     Analyze(analyze::Args),
+    /// Find the nearest places of a world that satisfy conditions: ground, summits, lakes, rivers
+    Locate(locate::Args),
     /// Find a recipe whose terrain has statistics similar to those of a real place
     Fit(fit::Args),
     /// Refine a file of heights to a smaller cell: its rivers are kept, and valleys and slopes are added between them
@@ -92,6 +94,7 @@ impl Cli {
             Command::Export(args) => export::run(&args),
             Command::Build(args) => build::run(&args),
             Command::Analyze(args) => analyze::run(&args),
+            Command::Locate(args) => locate::run(&args),
             Command::Fit(args) => fit::run(&args),
             Command::Refine(args) => refine::run(&args),
             Command::Grow(args) => grow::run(&args),

@@ -13,6 +13,7 @@ use orogen::fit::FitJob;
 use orogen::jobs::noise::NoiseJob;
 use orogen::jobs::variants::VariantsJob;
 use orogen::jobs::{AnalyzeJob, BlocksJob, GrowJob, MapJob, RenderJob};
+use orogen::locate::LocateJob;
 use orogen::options::{Choice, Condition, OptionSpec, Options, ValueKind, quoted};
 use orogen::tilemap::TilemapJob;
 
@@ -73,6 +74,7 @@ jobs!(
     BuildSpec,
     GrowJob,
     AnalyzeJob,
+    LocateJob,
     FitJob,
     EngineJob
 );

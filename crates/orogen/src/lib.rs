@@ -140,7 +140,7 @@ pub use orogen_io as io;
 #[doc(hidden)]
 pub use orogen_jobs::graph_layout;
 #[doc(inline)]
-pub use orogen_jobs::{builder, export, fit, jobs, options, tilemap};
+pub use orogen_jobs::{builder, export, fit, jobs, locate, options, tilemap};
 #[doc(inline)]
 pub use orogen_noise as noise;
 #[doc(inline)]

@@ -14,6 +14,7 @@ pub mod fit;
 pub mod generate;
 pub mod graph;
 pub mod grow;
+pub mod locate;
 pub mod map;
 pub mod new;
 pub mod noise;

@@ -103,7 +103,8 @@ pub const WRITERS: &[Writer] = &[
 ];
 
 /// Commands that only write text to standard output.
-const TALKERS: &[&str] = &["presets", "ops", "schema", "explain", "check", "cache", "devices", "completions", "help"];
+const TALKERS: &[&str] =
+    &["presets", "ops", "schema", "explain", "check", "cache", "devices", "completions", "help", "locate"];
 
 /// Commands that never overwrite files.
 const STARTERS: &[&str] = &["new"];

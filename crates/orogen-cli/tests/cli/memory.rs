@@ -45,6 +45,8 @@ fn rows(side: usize) -> Vec<Vec<String>> {
         "generate land.toml -o made -q".into(),
         "generate dem.tif -o placed -q".into(),
         "analyze land.toml -q".into(),
+        "locate land.toml --where height>1400 --area 1000000 -q".into(),
+        "locate dem.tif --find summits -q".into(),
         "analyze dem.tif -o page.png -q".into(),
         "variants land.toml --seeds 2 -q".into(),
         "variants land.toml --seeds 2 --render --size 256 -q".into(),

@@ -162,6 +162,21 @@ fn a_simd_level_that_is_not_there_is_refused_and_the_bits_are_the_same_at_all() 
 }
 
 #[test]
+fn locate_finds_places_of_recipes_and_files_of_heights() {
+    let folder = Folder::with_small();
+    let found = folder.good(&["locate", "small.toml", "--largest", "height", "-q"]).text().to_string();
+    assert!(found.starts_with("1. ") && found.contains(": height ") && found.contains("searched at a cell"), "{found}");
+    folder.good(&["export", "small.toml", "-o", "small.tif", "-q"]);
+    let of_file = folder.good(&["locate", "small.tif", "--largest", "height", "-q"]).text().to_string();
+    assert_eq!(found.split(" (").next(), of_file.split(" (").next());
+    // Each seed is another world.
+    let seeds = folder.good(&["locate", "small.toml", "--seed", "1..3", "--largest", "height", "--json", "-q"]);
+    assert_eq!(seeds.text().matches("\"places\"").count(), 3);
+    folder.bad(&["locate", "small.toml", "--where", "height >"], 2, "such as `height > 3000`");
+    folder.bad(&["locate", "small.toml", "--near", "1"], 2, "two numbers");
+}
+
+#[test]
 fn analyze_measures_recipes_and_files_of_heights() {
     let folder = Folder::with_solutions();
     let window = ["--window", "10,20,128,96"];

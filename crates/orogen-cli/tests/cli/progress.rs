@@ -41,6 +41,7 @@ fn every_command_reports_one_share_that_only_grows_to_the_end() {
         &["export", "rivers.toml", "-o", "few.stl", "--max-error", "2"],
         &["map", "rivers.toml", "-o", "map.png"],
         &["analyze", "rivers.toml", "-o", "page.png"],
+        &["locate", "rivers.toml", "--largest", "height"],
         &["render", "rivers.toml", "--size", "120", "--turntable", "3", "-o", "around.gif"],
         &["grow", "rivers.toml", "--frames", "9", "-o", "grow.gif"],
         &["build", "rivers.toml", "-o", "built.tif"],

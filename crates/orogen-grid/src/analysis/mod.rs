@@ -25,6 +25,8 @@ pub mod insolation;
 #[doc(hidden)]
 pub mod nine;
 #[doc(hidden)]
+pub mod patches;
+#[doc(hidden)]
 pub mod position;
 #[doc(hidden)]
 pub mod roughness;
