@@ -33,7 +33,7 @@ fn every_command_reports_one_share_that_only_grows_to_the_end() {
     let folder = Folder::new();
     folder.write("rivers.toml", RIVERS);
     folder.good(&["export", "rivers.toml", "-o", "place.tif"]);
-    let commands: [&[&str]; 16] = [
+    let commands: [&[&str]; 17] = [
         &["generate", "rivers.toml", "-o", "out"],
         &["export", "rivers.toml", "-o", "land.tif"],
         &["export", "rivers.toml", "--layer", "normal", "-o", "normal.png"],
