@@ -12,6 +12,8 @@ mod keyboard;
 mod manners;
 #[path = "window/random.rs"]
 mod random;
+#[path = "window/reroutes.rs"]
+mod reroutes;
 #[path = "window/speed.rs"]
 mod speed;
 #[path = "window/tools.rs"]

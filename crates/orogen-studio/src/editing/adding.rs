@@ -96,7 +96,7 @@ fn first_land(recipe: &Recipe, is_land: bool) -> Vec<Reader> {
 }
 
 /// The node or layer that a reader reads.
-fn read_by(recipe: &Recipe, reader: &Reader) -> Option<String> {
+pub(super) fn read_by(recipe: &Recipe, reader: &Reader) -> Option<String> {
     let input = match reader {
         Reader::Output(name) => {
             recipe.output_inputs().iter().find(|(output, _)| output == name).map(|(_, input)| input)

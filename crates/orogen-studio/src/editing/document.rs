@@ -276,7 +276,7 @@ impl Document {
             text = edit::apply(&text, &recipe, step).map_err(fault)?;
             recipe = self.parse(&text)?;
             let kept = Kept::of(&text);
-            let followed = kept.after(&renames, |name| recipe.nodes().iter().any(|named| named.name == name));
+            let followed = kept.after(&renames, &recipe);
             if followed != kept {
                 text = edit::apply(&text, &recipe, &Edit::Keep(followed)).map_err(fault)?;
             }

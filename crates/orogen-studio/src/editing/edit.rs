@@ -12,6 +12,7 @@ use toml_edit::{DocumentMut, Item, Table};
 use super::ground::{Ground, set_colors};
 use super::kept::Kept;
 use super::references::{Change, Site, change};
+use super::reroutes::{self, Reroute};
 use super::strokes::{self, Placement};
 use super::tables::{add_node, node, set, top, value_of};
 use super::{drawing, groups, names, notes};
@@ -62,6 +63,8 @@ pub enum Edit {
     Keep(Kept),
     /// Sets the title of a frame, by its index.
     FrameTitle { frame: usize, title: String },
+    /// Replaces the points of a wire of the graph; without points it runs straight.
+    Reroute(Reroute),
     /// Several edits, one after another, which are undone together. They rename nothing.
     Several(Vec<Edit>),
 }
@@ -96,6 +99,7 @@ impl Edit {
             Edit::Group { .. } => "edit.group",
             Edit::Ungroup(_) => "edit.ungroup",
             Edit::Keep(_) | Edit::FrameTitle { .. } => "edit.keep",
+            Edit::Reroute(_) => "edit.reroute",
             Edit::Several(edits) => edits.first().map_or("edit.value", Edit::label),
         }
     }
@@ -248,7 +252,14 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
         }
         Edit::Duplicate(names) => {
             names.iter().try_for_each(|name| written(name))?;
-            duplicate(&mut document, recipe, names)?;
+            let copies = copies(recipe, names);
+            duplicate(&mut document, recipe, names, &copies)?;
+            let mut kept = Kept::of(text);
+            let copied: Vec<Reroute> = kept.reroutes.iter().filter_map(|reroute| reroute.copied(&copies)).collect();
+            if !copied.is_empty() {
+                kept.reroutes.extend(copied);
+                kept.write(&mut document)?;
+            }
         }
         Edit::Rename { .. } | Edit::Group { .. } | Edit::Ungroup(_) | Edit::RenameGroup { .. } => {
             let renames = renames(recipe, edit);
@@ -278,6 +289,11 @@ pub fn apply(text: &str, recipe: &Recipe, edit: &Edit) -> Result<String, String>
             let mut kept = Kept::of(text);
             kept.frames.get_mut(*frame).ok_or_else(|| missing("such frame"))?.title.clone_from(title);
             kept.write(&mut document)?;
+        }
+        Edit::Reroute(reroute) => {
+            let kept = Kept::of(text);
+            let reroutes = reroutes::with(kept.reroutes, reroute);
+            Kept { reroutes, ..kept }.write(&mut document)?;
         }
         Edit::Several(_) => return Err("several edits are applied one by one".into()),
     }
@@ -393,7 +409,8 @@ fn delete(document: &mut DocumentMut, recipe: &Recipe, names: &[String]) -> Resu
     Ok(())
 }
 
-fn duplicate(document: &mut DocumentMut, recipe: &Recipe, names: &[String]) -> Result<(), String> {
+/// The names of the copies of nodes.
+fn copies<'a>(recipe: &Recipe, names: &'a [String]) -> HashMap<&'a str, String> {
     let mut taken: HashSet<String> = recipe.nodes().iter().map(|named| named.name.clone()).collect();
     let mut copies = HashMap::new();
     // A whole group becomes a new group.
@@ -408,6 +425,15 @@ fn duplicate(document: &mut DocumentMut, recipe: &Recipe, names: &[String]) -> R
         taken.insert(free.clone());
         copies.insert(name.as_str(), free);
     }
+    copies
+}
+
+fn duplicate(
+    document: &mut DocumentMut,
+    recipe: &Recipe,
+    names: &[String],
+    copies: &HashMap<&str, String>,
+) -> Result<(), String> {
     let nodes = top(document, "nodes").ok_or("`nodes` is no table")?;
     for name in names {
         let mut copy = nodes.get(name).cloned().ok_or_else(|| format!("there is no node `{name}`"))?;

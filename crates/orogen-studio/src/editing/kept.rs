@@ -1,11 +1,14 @@
-//! What the studio keeps in a recipe, in the table `[studio]`: a list of exports, frames of the graph, and locked
-//! nodes. It has no effect on the world.
+//! What the studio keeps in a recipe, in the table `[studio]`: a list of exports, frames and reroutes of the
+//! graph, and locked nodes. It has no effect on the world.
 
 use std::collections::BTreeMap;
 
+use orogen::recipe::Recipe;
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value};
+
+use super::reroutes::{self, Reroute};
 
 /// What is kept.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -15,6 +18,9 @@ pub struct Kept {
     pub exports: Vec<KeptExport>,
     /// Frames around boxes of the graph.
     pub frames: Vec<Frame>,
+    /// Points through which wires of the graph run.
+    #[serde(deserialize_with = "reroutes::lenient")]
+    pub reroutes: Vec<Reroute>,
     /// Nodes that cannot be changed.
     pub locked: Vec<String>,
 }
@@ -97,9 +103,10 @@ impl Kept {
         Ok(())
     }
 
-    /// It after nodes were renamed, without nodes that are gone.
+    /// It after nodes were renamed, without nodes and wires that are gone.
     #[must_use]
-    pub fn after(&self, renames: &[(String, String)], is_there: impl Fn(&str) -> bool) -> Kept {
+    pub fn after(&self, renames: &[(String, String)], recipe: &Recipe) -> Kept {
+        let is_there = |name: &str| recipe.nodes().iter().any(|named| named.name == name);
         let follow = |names: &[String]| -> Vec<String> {
             let new = |name: &String| renames.iter().find(|(from, _)| from == name).map(|(_, to)| to.clone());
             let renamed = names.iter().map(|name| new(name).unwrap_or_else(|| name.clone()));
@@ -109,6 +116,7 @@ impl Kept {
         Kept {
             exports: self.exports.clone(),
             frames: frames.filter(|frame| !frame.nodes.is_empty()).collect(),
+            reroutes: self.reroutes.iter().filter_map(|reroute| reroute.after(renames, recipe)).collect(),
             locked: follow(&self.locked),
         }
     }

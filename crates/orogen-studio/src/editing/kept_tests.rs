@@ -16,7 +16,7 @@ fn kept() -> Kept {
         ..KeptExport::default()
     };
     let frame = Frame { title: "基础".into(), nodes: vec!["hills".into(), "soft".into()] };
-    Kept { exports: vec![export.clone(), export], frames: vec![frame], locked: vec!["hills".into()] }
+    Kept { exports: vec![export.clone(), export], frames: vec![frame], locked: vec!["hills".into()], ..Kept::default() }
 }
 
 #[test]

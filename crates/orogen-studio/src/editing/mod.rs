@@ -15,6 +15,7 @@ pub mod kept;
 pub mod names;
 pub mod notes;
 mod references;
+pub mod reroutes;
 pub mod strokes;
 mod tables;
 mod thinning;

@@ -12,6 +12,7 @@ use orogen::declare::Input;
 use super::action::Action;
 use super::command::Command;
 use super::graph_box::{self, Shown, WIDTH};
+use super::graph_reroutes::Reroutes;
 use super::graph_search::{Found, OpTextures, Search};
 use crate::catalogue::Language;
 use crate::editing::adding::After;
@@ -45,6 +46,8 @@ pub struct Graph {
     wire: Option<String>,
     /// The wire that was chosen, by what reads through it.
     pub(super) chosen: Option<Reader>,
+    /// The points of wires.
+    pub(super) reroutes: Reroutes,
     /// The corner where the selection rectangle started.
     rectangle: Option<Pos2>,
     /// The small pictures of nodes on the graphics card.
@@ -73,6 +76,7 @@ impl Default for Graph {
             ops: None,
             wire: None,
             chosen: None,
+            reroutes: Reroutes::default(),
             rectangle: None,
             textures: HashMap::new(),
             wants_whole: true,
@@ -132,20 +136,19 @@ impl Graph {
         let scene = std::mem::take(&mut self.scene);
         let rects: Vec<Rect> = scene.boxes.iter().map(|block| self.rect_of(block, studio, origin)).collect();
         self.show_frames(ui, &painter, (&scene, &rects), (studio, language), actions);
-        self.draw_wires(ui, &painter, &scene, &rects, studio);
+        let routes = self.routes(&scene, &rects, studio);
+        self.draw_wires(ui, &painter, &scene, &routes, studio);
         for (block, own) in scene.boxes.iter().zip(&rects) {
             self.show_box(ui, &painter, block, *own, (rect, studio, language), &scene, actions);
         }
+        let is_on_wire = self.show_reroutes(ui, (&painter, &background), &routes, (studio, language), actions);
         self.finish_wire(ui, &painter, &scene, &rects, actions);
         self.select(ui, &painter, &background, &scene, &rects, studio, actions);
-        let pointer = background.interact_pointer_pos();
-        if background.clicked()
-            && let Some(at) = pointer
-        {
-            self.choose_wire(&scene, &rects, at);
-        }
         self.scene = scene;
-        if background.double_clicked() || background.secondary_clicked() {
+        let pointer = background.interact_pointer_pos();
+        if is_on_wire {
+            self.search = None;
+        } else if background.double_clicked() || background.secondary_clicked() {
             let at = self.to_graph(pointer.unwrap_or(rect.center()) - origin.to_vec2());
             self.search = Some(Search::new(at));
         } else if background.clicked() {
@@ -154,7 +157,7 @@ impl Graph {
         }
         let is_over = ui.rect_contains_pointer(rect) && ui.ctx().memory(|memory| memory.focused().is_none());
         let is_delete = ui.input(|input| input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace));
-        if is_over && is_delete && !self.cut_wire(studio, actions) {
+        if is_over && is_delete && !self.remove_point(studio, actions) && !self.cut_wire(studio, actions) {
             actions.push(Action::Command(Command::Delete));
         }
         self.find(ui, rect, studio, language, actions);
@@ -227,12 +230,14 @@ impl Graph {
     }
 
     fn fit(&mut self, studio: &Studio, size: Vec2) {
-        let mut bounds = Rect::NOTHING;
-        for block in &self.scene.boxes {
-            if let Some(place) = self.place_of(block) {
-                bounds = bounds.union(Rect::from_min_size(place, graph_box::size(block, studio.has_thumbnails)));
-            }
-        }
+        // The boxes and the points of wires at normal size.
+        let shown = (self.offset, self.zoom);
+        (self.offset, self.zoom) = (Vec2::ZERO, 1.0);
+        let rects: Vec<Rect> = self.scene.boxes.iter().map(|block| self.rect_of(block, studio, Pos2::ZERO)).collect();
+        let points = self.routes(&self.scene, &rects, studio).into_iter().flat_map(|route| route.points);
+        let bounds = points.fold(Rect::NOTHING, |all, point| all.union(Rect::from_pos(point)));
+        let bounds = rects.iter().fold(bounds, |all, rect| all.union(*rect));
+        (self.offset, self.zoom) = shown;
         if bounds.is_finite() && bounds.width() > 0.0 {
             let room = (size - vec2(32.0, ROW + 16.0)).max(Vec2::splat(40.0));
             self.zoom = (room.x / bounds.width()).min(room.y / bounds.height()).min(1.0);

@@ -1,64 +1,81 @@
 //! The wires of the graph: drawn, chosen with a click, and cut.
 
 use eframe::egui::epaint::CubicBezierShape;
-use eframe::egui::{Color32, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2};
+use eframe::egui::{Color32, Painter, Pos2, Rect, Stroke, Ui, pos2};
 use orogen::declare::Input;
 
 use super::action::Action;
 use super::graph_box;
 use super::graph_panel::Graph;
+use super::wire_curve::{self, Piece};
 use crate::editing::edit::{Edit, Reader};
+use crate::editing::reroutes::Reroute;
 use crate::studio::Studio;
 use crate::view::scene::{End, Kind, Scene, Wire};
 
 /// The distance from a wire within which a click chooses it, in points.
 const NEAR: f32 = 7.0;
 
-/// Number of straight pieces of a wire, for its distance from a click.
-const PIECES: usize = 24;
+/// A wire on the screen.
+pub(super) struct Route {
+    wire: Wire,
+    /// The wire and its points, as the recipe keeps them.
+    pub(super) reroute: Reroute,
+    pub(super) ends: [Pos2; 2],
+    /// The positions of its points.
+    pub(super) points: Vec<Pos2>,
+    pub(super) pieces: Vec<Piece>,
+}
+
+/// The wire at a position.
+pub(super) fn near(routes: &[Route], at: Pos2) -> Option<&Route> {
+    let distances = routes.iter().filter_map(|route| Some((wire_curve::nearest(&route.pieces, at)?.2, route)));
+    let near = distances.filter(|(distance, _)| *distance < NEAR).min_by(|a, b| a.0.total_cmp(&b.0));
+    near.map(|(_, route)| route)
+}
 
 impl Graph {
+    /// The wires on the screen.
+    pub(super) fn routes(&self, scene: &Scene, rects: &[Rect], studio: &Studio) -> Vec<Route> {
+        let route = |wire: &Wire| {
+            let ends = self.ends(scene, rects, *wire)?;
+            let from = scene.boxes.get(wire.from)?.outlets.get(wire.outlet)?.clone();
+            let reader = reader_of(scene, *wire)?;
+            let mut reroute = Reroute { from, reader, group: self.group.clone(), points: Vec::new() };
+            self.reroutes.fill(&mut reroute, studio);
+            let points = self.places_of_points(&reroute.points, ends);
+            let pieces = wire_curve::pieces(ends[0], &points, ends[1], self.zoom);
+            Some(Route { wire: *wire, reroute, ends, points, pieces })
+        };
+        scene.wires.iter().filter_map(route).collect()
+    }
+
     /// Draws the wires.
-    pub(super) fn draw_wires(&mut self, ui: &Ui, painter: &Painter, scene: &Scene, rects: &[Rect], studio: &Studio) {
-        if !studio.selected.is_empty() || !scene.wires.iter().any(|wire| reader_of(scene, *wire) == self.chosen) {
+    pub(super) fn draw_wires(&mut self, ui: &Ui, painter: &Painter, scene: &Scene, routes: &[Route], studio: &Studio) {
+        let is_chosen = |route: &Route, chosen: &Option<Reader>| chosen.as_ref() == Some(&route.reroute.reader);
+        if !studio.selected.is_empty() || !routes.iter().any(|route| is_chosen(route, &self.chosen)) {
             self.chosen = None;
         }
-        for wire in &scene.wires {
-            let Some([start, end]) = self.ends(scene, rects, *wire) else { continue };
+        if !studio.selected.is_empty() {
+            self.reroutes.deselect();
+        }
+        for route in routes {
             let is_selected = |block: usize| {
                 scene
                     .boxes
                     .get(block)
                     .is_some_and(|block| block.nodes.iter().any(|name| studio.selected.contains(name)))
             };
-            let is_chosen = self.chosen.is_some() && reader_of(scene, *wire) == self.chosen;
+            let is_chosen = is_chosen(route, &self.chosen);
             let color = if is_chosen { ui.visuals().selection.stroke.color } else { ui.visuals().weak_text_color() };
-            let is_strong = is_chosen || is_selected(wire.from) || is_selected(wire.to);
-            self.draw_wire(painter, start, end, is_strong, color);
+            let is_strong = is_chosen || is_selected(route.wire.from) || is_selected(route.wire.to);
+            draw(painter, &route.pieces, is_strong, color);
         }
     }
 
     /// Draws a wire.
     pub(super) fn draw_wire(&self, painter: &Painter, from: Pos2, to: Pos2, is_strong: bool, color: Color32) {
-        let stroke =
-            Stroke::new(if is_strong { 2.2 } else { 1.3 }, if is_strong { color.gamma_multiply(1.6) } else { color });
-        let points = self.curve(from, to);
-        painter.add(CubicBezierShape::from_points_stroke(points, false, Color32::TRANSPARENT, stroke));
-    }
-
-    /// Chooses the wire at a position, or none.
-    pub(super) fn choose_wire(&mut self, scene: &Scene, rects: &[Rect], at: Pos2) {
-        let distance = |wire: &Wire| {
-            let [start, end] = self.ends(scene, rects, *wire)?;
-            let curve =
-                CubicBezierShape::from_points_stroke(self.curve(start, end), false, Color32::TRANSPARENT, Stroke::NONE);
-            let points: Vec<Pos2> = (0..=PIECES).map(|k| curve.sample(k as f32 / PIECES as f32)).collect();
-            let distances = points.windows(2).map(|ends| from_line(at, ends[0], ends[1]));
-            distances.min_by(f32::total_cmp)
-        };
-        let near = scene.wires.iter().filter_map(|wire| Some((distance(wire)?, wire)));
-        let near = near.filter(|(distance, _)| *distance < NEAR).min_by(|a, b| a.0.total_cmp(&b.0));
-        self.chosen = near.and_then(|(_, wire)| reader_of(scene, *wire));
+        draw(painter, &wire_curve::pieces(from, &[], to, self.zoom), is_strong, color);
     }
 
     /// Cuts the chosen wire. Returns whether there was one.
@@ -77,11 +94,6 @@ impl Graph {
             }
         }));
         true
-    }
-
-    fn curve(&self, from: Pos2, to: Pos2) -> [Pos2; 4] {
-        let bend = ((to.x - from.x).abs() * 0.5).clamp(20.0 * self.zoom, 120.0);
-        [from, from + vec2(bend, 0.0), to - vec2(bend, 0.0), to]
     }
 
     /// The ends of a wire on the screen.
@@ -110,9 +122,10 @@ fn reader_of(scene: &Scene, wire: Wire) -> Option<Reader> {
     })
 }
 
-/// The distance of a point from a piece of a line.
-fn from_line(at: Pos2, from: Pos2, to: Pos2) -> f32 {
-    let along = to - from;
-    let share = ((at - from).dot(along) / along.length_sq().max(1e-6)).clamp(0.0, 1.0);
-    at.distance(from + along * share)
+fn draw(painter: &Painter, pieces: &[Piece], is_strong: bool, color: Color32) {
+    let stroke =
+        Stroke::new(if is_strong { 2.2 } else { 1.3 }, if is_strong { color.gamma_multiply(1.6) } else { color });
+    for piece in pieces {
+        painter.add(CubicBezierShape::from_points_stroke(*piece, false, Color32::TRANSPARENT, stroke));
+    }
 }

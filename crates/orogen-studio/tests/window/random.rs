@@ -1,6 +1,6 @@
 //! Random commands, clicks, keys and words, with undo in between: nothing panics, and all of it can be undone.
 
-use eframe::egui::{Event, Key, Modifiers, Role, vec2};
+use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Role, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use orogen::grid::random::Random;
@@ -46,9 +46,36 @@ fn writes(name: &str) -> bool {
         .any(|word| name.contains(word))
 }
 
+/// Clicks on a wire of the graph or one of its points, or drags it.
+fn use_wire(harness: &mut Harness<'static, App>, random: &mut Random) {
+    let all: Vec<_> = harness.query_all_by_label_contains("wire ").map(|node| node.rect().center()).collect();
+    let Some(at) = any(random, &all) else { return };
+    let button = |button: PointerButton, pos: Pos2, pressed: bool| Event::PointerButton {
+        pos,
+        button,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    harness.event(Event::PointerMoved(at));
+    harness.step();
+    let events = &mut harness.input_mut().events;
+    match random.below(4) {
+        0 => events.extend([true, false].map(|pressed| button(PointerButton::Secondary, at, pressed))),
+        1 => {
+            let to = at + vec2(random.below(300) as f32 - 150.0, random.below(200) as f32 - 100.0);
+            events.push(button(PointerButton::Primary, at, true));
+            harness.step();
+            harness.event(Event::PointerMoved(to));
+            harness.step();
+            harness.event(button(PointerButton::Primary, to, false));
+        }
+        _ => events.extend([true, false, true, false].map(|pressed| button(PointerButton::Primary, at, pressed))),
+    }
+}
+
 /// Does something that a user could do.
 fn act(harness: &mut Harness<'static, App>, random: &mut Random) {
-    match random.below(14) {
+    match random.below(15) {
         at @ 0..=3 => {
             // Half of them change the recipe.
             let is_chosen = |command: &Command| match at {
@@ -86,6 +113,7 @@ fn act(harness: &mut Harness<'static, App>, random: &mut Random) {
                 source: eframe::egui::MouseWheelSource::Unknown,
             });
         }
+        8 => use_wire(harness, random),
         _ => {
             let role = any(
                 random,
