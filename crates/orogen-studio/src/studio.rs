@@ -70,7 +70,7 @@ pub struct Studio {
     detail: Detail,
     /// The revision and region for which the current small pictures were requested.
     asked_small: Option<(u64, Region)>,
-    /// The revision of the text and the look for which the current pictures were requested.
+    /// The revision of the recipe and the look for which the current pictures were requested.
     asked: Option<(u64, Look)>,
     /// The finest picture, with the revision and look for which it was requested.
     land: Option<(u64, Look, Arc<Frame>)>,
@@ -193,18 +193,18 @@ impl Studio {
             self.look.coloring = Coloring::Own;
         }
         self.refresh_thumbnails();
-        let now = (self.document.revision(), self.look.clone());
+        let now = (self.document.recipe_revision(), self.look.clone());
         if self.asked.as_ref() == Some(&now) {
             return false;
         }
-        self.asked = Some(now);
         self.detail.cancel();
         if !self.document.is_valid() {
             return false;
         }
+        self.asked = Some(now);
         // With other colors or another sun, the samples can be reused.
         let is_same = |(revision, look, _): &&(u64, Look, Arc<Frame>)| {
-            *revision == self.document.revision() && look.has_land_of(&self.look)
+            *revision == self.document.recipe_revision() && look.has_land_of(&self.look)
         };
         let land = self.land.as_ref().filter(is_same).map(|(.., frame)| Arc::clone(frame));
         self.worker.ask(Request { land, ..self.request() });
@@ -269,13 +269,13 @@ impl Studio {
         let is_asked = self
             .asked
             .as_ref()
-            .is_some_and(|(revision, look)| *revision == self.document.revision() && *look == self.look);
+            .is_some_and(|(revision, look)| *revision == self.document.recipe_revision() && *look == self.look);
         is_asked && self.is_done() && self.document.is_valid()
     }
 
     /// Requests small pictures of the nodes when the picture of the land is done; a change cancels them.
     fn refresh_thumbnails(&mut self) {
-        let now = (self.document.revision(), self.look.region);
+        let now = (self.document.recipe_revision(), self.look.region);
         if self.asked_small.is_some_and(|asked| asked != now) || !self.has_thumbnails {
             self.thumbnails.cancel();
             self.asked_small = None;

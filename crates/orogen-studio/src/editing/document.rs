@@ -32,6 +32,7 @@ pub struct Document {
     kept: Kept,
     diagnostics: Vec<Diagnostic>,
     revision: u64,
+    recipe_revision: u64,
 }
 
 impl Document {
@@ -52,6 +53,7 @@ impl Document {
             recipe,
             diagnostics: Vec::new(),
             revision: 0,
+            recipe_revision: 0,
         })
     }
 
@@ -103,6 +105,7 @@ impl Document {
             recipe: Recipe::new(orogen::WorldSpec::default()),
             diagnostics: Vec::new(),
             revision: 0,
+            recipe_revision: 0,
         };
         document.read();
         document
@@ -214,6 +217,19 @@ impl Document {
         self.revision
     }
 
+    /// A number that increases with each change of the recipe, which comments and what the studio keeps are no part of.
+    #[must_use]
+    pub fn recipe_revision(&self) -> u64 {
+        self.recipe_revision
+    }
+
+    fn use_recipe(&mut self, recipe: Recipe) {
+        if recipe != self.recipe {
+            self.recipe_revision += 1;
+            self.recipe = recipe;
+        }
+    }
+
     /// Whether the text differs from the text in the file.
     #[must_use]
     pub fn is_changed(&self) -> bool {
@@ -246,7 +262,7 @@ impl Document {
         self.history.push(text, edit.label(), gesture.as_deref());
         if !unchanged {
             self.revision += 1;
-            self.recipe = recipe;
+            self.use_recipe(recipe);
             self.kept = Kept::of(self.text());
         }
         Ok(())
@@ -353,7 +369,7 @@ impl Document {
         self.kept = Kept::of(self.text());
         match self.parse(self.text()) {
             Ok(recipe) => {
-                self.recipe = recipe;
+                self.use_recipe(recipe);
                 self.diagnostics.clear();
             }
             Err(error) => self.diagnostics = error.diagnostics().to_vec(),

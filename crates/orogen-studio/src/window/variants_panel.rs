@@ -27,7 +27,7 @@ pub struct VariantsPanel {
     varied: Varied,
     strip: Strip,
     variants: Vec<Variant>,
-    /// What the pictures depend on: the revision of the text, and the varied quantity.
+    /// What the pictures depend on: the revision of the recipe, and the varied quantity.
     asked: Option<(u64, Varied)>,
 }
 
@@ -83,7 +83,7 @@ impl VariantsPanel {
 
     /// Requests pictures if the text or the varied quantity has changed.
     fn refresh(&mut self, studio: &Studio) -> Result<()> {
-        let now = (studio.document.revision(), self.varied.clone());
+        let now = (studio.document.recipe_revision(), self.varied.clone());
         if self.asked.as_ref() == Some(&now) || !studio.document.is_valid() {
             return Ok(());
         }
