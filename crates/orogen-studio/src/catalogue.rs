@@ -1,6 +1,7 @@
 //! The texts of the interface, in one catalog file per language: `locales/`.
 
 mod declared;
+mod messages;
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;

@@ -202,6 +202,21 @@ fn it_speaks_chinese_if_the_system_has_letters_for_it() {
     assert!(speaks || harness.query_by_label("Graph").is_some());
 }
 
+/// Errors are in the language of the interface, in the text and in messages.
+#[test]
+fn errors_are_told_in_chinese() {
+    let folder = TestFolder::new("studio-chinese-errors").unwrap();
+    let broken = folder.join("broken.toml");
+    let text = "orogen = 1\n[nodes.land]\nop = \"fbmm\"\n[outputs]\nheight = \"lnd\"\n";
+    std::fs::write(&broken, text).unwrap();
+    let mut harness = window(&folder, broken.to_str(), Language::Chinese);
+    harness.run_steps(3);
+    // Without a font the interface is in English.
+    let speaks = harness.query_by_label("节点图").is_some();
+    let (own, other) = ("3: 没有名为“fbmm”的算子；是否想写“fbm”？", "3: unknown op `fbmm`; did you mean `fbm`?");
+    assert_eq!((harness.query_by_label(own).is_some(), harness.query_by_label(other).is_some()), (speaks, !speaks));
+}
+
 /// Broken and huge recipes open; without a graphics card everything except the 3D view is available.
 #[test]
 fn broken_and_huge_recipes_open_and_so_does_a_window_without_a_graphics_card() {

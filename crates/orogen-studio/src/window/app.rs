@@ -238,7 +238,7 @@ impl App {
     }
 
     fn say(&mut self, text: &str) {
-        self.dialogs.message = Some((self.text("message.title").into(), text.into()));
+        self.dialogs.message = Some((self.text("message.title").into(), self.language.message(text).into_owned()));
     }
 
     fn say_failure(&mut self, result: Result<()>) {

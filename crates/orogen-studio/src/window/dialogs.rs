@@ -109,7 +109,7 @@ impl FileDialog {
                 ui.label(self.folder.display().to_string());
             });
             if let Some(failure) = &self.failure {
-                ui.colored_label(ui.visuals().error_fg_color, failure);
+                ui.colored_label(ui.visuals().error_fg_color, language.message(failure));
             }
             let mut entered = None;
             ScrollArea::vertical().max_height(270.0).auto_shrink(false).show(ui, |ui| {

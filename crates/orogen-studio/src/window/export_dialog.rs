@@ -200,7 +200,7 @@ impl ExportDialog {
                 let text = language.fill("export.done", &[("file", &self.made), ("what", words)]);
                 ScrollArea::vertical().id_salt("outcome").max_height(150.0).show(ui, |ui| ui.label(text));
             }
-            Some(Err(error)) => drop(ui.colored_label(ui.visuals().error_fg_color, error)),
+            Some(Err(error)) => drop(ui.colored_label(ui.visuals().error_fg_color, language.message(error))),
             None => {}
         }
     }

@@ -153,7 +153,7 @@ impl ExportList {
         } else if let Some((_, result)) = self.made.iter().find(|(own, _)| own == export) {
             match result {
                 Ok(words) => drop(ui.weak(language.text("exports.done")).on_hover_text(words)),
-                Err(error) => drop(ui.colored_label(ui.visuals().error_fg_color, error)),
+                Err(error) => drop(ui.colored_label(ui.visuals().error_fg_color, language.message(error))),
             }
         }
     }

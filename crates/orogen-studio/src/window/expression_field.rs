@@ -96,7 +96,7 @@ impl ExpressionFields {
         }
         let has_ended = response.lost_focus();
         if let Some(fault) = &typed.fault {
-            ui.colored_label(error, &fault.message);
+            ui.colored_label(error, language.message(&fault.message));
         }
         self.words(ui, site, &mut typed, completes, studio, language);
         if typed.text != before {

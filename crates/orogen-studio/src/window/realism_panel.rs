@@ -48,7 +48,9 @@ impl RealismPanel {
         match self.survey.outcome() {
             None => drop(ui.weak(language.text("real.waiting"))),
             Some(Ok(None)) => drop(ui.label(language.text("real.too_little"))),
-            Some(Err(error)) => drop(ui.colored_label(ui.visuals().error_fg_color, error.to_string())),
+            Some(Err(error)) => {
+                drop(ui.colored_label(ui.visuals().error_fg_color, language.message(&error.to_string())))
+            }
             Some(Ok(Some(measures))) => {
                 let measures = Arc::new(measures.clone());
                 ScrollArea::both().auto_shrink(false).show(ui, |ui| table(ui, &measures, language));

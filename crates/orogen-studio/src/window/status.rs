@@ -17,7 +17,7 @@ pub fn show(ui: &mut Ui, studio: &Studio, gpu: Option<&Gpu>, language: Language)
             ui.add(egui::ProgressBar::new(studio.share()).desired_width(120.0).desired_height(8.0));
         }
         if let Some(failure) = &studio.failure {
-            ui.colored_label(ui.visuals().error_fg_color, failure.to_string());
+            ui.colored_label(ui.visuals().error_fg_color, language.message(&failure.to_string()));
             return;
         }
         if !studio.document.is_valid() {
@@ -42,7 +42,7 @@ pub fn show(ui: &mut Ui, studio: &Studio, gpu: Option<&Gpu>, language: Language)
             match gpu.failure() {
                 None => ui.weak(language.fill("status.device", &[("name", &gpu.adapter().name)])),
                 Some(failure) => {
-                    let why = language.fill("status.processor", &[("why", &failure.to_string())]);
+                    let why = language.fill("status.processor", &[("why", &language.message(&failure.to_string()))]);
                     ui.colored_label(ui.visuals().warn_fg_color, why)
                 }
             };

@@ -44,7 +44,7 @@ impl TextPanel {
         }
         let faults = studio.document.diagnostics();
         if !faults.is_empty() {
-            self.faults(ui, faults, actions);
+            self.faults(ui, faults, language, actions);
         }
         let is_dark = ui.visuals().dark_mode;
         let error = ui.visuals().error_fg_color;
@@ -113,12 +113,13 @@ impl TextPanel {
     }
 
     /// The list of errors; a click shows the line.
-    fn faults(&self, ui: &mut Ui, faults: &[Diagnostic], actions: &mut Vec<Action>) {
+    fn faults(&self, ui: &mut Ui, faults: &[Diagnostic], language: Language, actions: &mut Vec<Action>) {
         egui::ScrollArea::vertical().id_salt("faults").max_height(72.0).show(ui, |ui| {
             for fault in faults {
+                let message = language.message(&fault.message);
                 let text = match &fault.place {
-                    Some(place) => format!("{}: {}", place.line, fault.message),
-                    None => fault.message.clone(),
+                    Some(place) => format!("{}: {message}", place.line),
+                    None => message.into_owned(),
                 };
                 let label = egui::Label::new(egui::RichText::new(text).color(ui.visuals().error_fg_color))
                     .sense(Sense::click());

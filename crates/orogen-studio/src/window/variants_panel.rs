@@ -58,10 +58,12 @@ impl VariantsPanel {
             ui.weak(language.text("variants.help"));
         });
         if let Err(error) = self.refresh(studio) {
-            ui.colored_label(ui.visuals().error_fg_color, error.to_string());
+            ui.colored_label(ui.visuals().error_fg_color, language.message(&error.to_string()));
         }
         for (k, made) in self.strip.made() {
-            let picture = made.map(|picture| texture(ui, k, &picture)).map_err(|error| error.to_string());
+            let picture = made
+                .map(|picture| texture(ui, k, &picture))
+                .map_err(|error| language.message(&error.to_string()).into_owned());
             if let Some(variant) = self.variants.get_mut(k) {
                 variant.picture = Some(picture);
             }
