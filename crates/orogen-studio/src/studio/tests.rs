@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::editing::adding::After;
+use crate::editing::kept::Kept;
 use crate::editing::{adding, names};
 use orogen::declare::Input;
 use orogen::node::Node;
@@ -143,6 +144,23 @@ fn edit_while(goes_on: impl Fn(usize) -> bool, seed: u64) -> usize {
         assert!(studio.session().kept_memory() <= limit, "{}", studio.session().kept_memory());
     }
     edits
+}
+
+#[test]
+fn what_has_no_effect_on_the_land_makes_no_new_pictures() {
+    let session = Session::new(Options::default()).unwrap();
+    let mut studio =
+        Studio::new(session, Arc::new(|| ()), Document::of_preset(presets::find("hills").unwrap()).unwrap());
+    assert!(studio.refresh() && !studio.refresh());
+    let node = studio.document.recipe().nodes()[0].name.clone();
+    studio.edit(&Edit::Keep(Kept { locked: vec![node.clone()], ..studio.document.kept().clone() })).unwrap();
+    studio.edit(&Edit::Note { node, text: "the first".into() }).unwrap();
+    assert!(studio.document.history().undo_label().is_some() && !studio.refresh());
+    studio.type_text(format!("{}\n[", studio.document.text()));
+    assert!(!studio.refresh() && !studio.document.is_valid());
+    assert!(studio.undo() && !studio.refresh());
+    studio.edit(&Edit::Seed(77)).unwrap();
+    assert!(studio.refresh() && studio.undo() && studio.refresh());
 }
 
 #[test]
