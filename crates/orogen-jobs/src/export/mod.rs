@@ -68,6 +68,7 @@ mod world_export;
 
 pub use format::Format;
 pub use job::ExportJob;
+#[doc(hidden)]
 pub use layer_source::LayerSource;
 pub use registry::{all, named, of_path};
 pub use world_export::Export;

@@ -11,6 +11,7 @@ pub mod search;
 #[doc(hidden)]
 pub mod template;
 
+#[doc(hidden)]
 pub use features::FeatureVector;
 pub use job::FitJob;
 pub use search::{Effort, FitTarget, Found, search};

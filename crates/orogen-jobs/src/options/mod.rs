@@ -10,5 +10,7 @@ mod word;
 pub use given::Options;
 pub use palette::find_palette;
 pub(crate) use spec::by_name;
-pub use spec::{Choice, Component, Condition, OptionSpec, ValueKind};
+#[doc(hidden)]
+pub use spec::{Choice, Component, Condition};
+pub use spec::{OptionSpec, ValueKind};
 pub use word::quoted;
