@@ -1,7 +1,7 @@
 //! The window of a build without one.
 
 use super::spec::Form;
-use super::xyz;
+use super::tile_grid;
 use crate::options::Options;
 use orogen_engine::view::View;
 use orogen_engine::world::World;
@@ -22,7 +22,7 @@ impl Form {
         }
         let tile = || options.whole("tile").map(|side| side as usize).or(self.usual_tile()).unwrap_or(1);
         let cell = view.cell.unwrap_or_else(|| match self {
-            Form::Xyz(_) => xyz::cell_near(recipe.world.cell, tile(), recipe.georeference().as_ref()),
+            Form::Xyz(_) => tile_grid::cell_near(recipe.world.cell, tile(), recipe.georeference().as_ref()),
             _ => recipe.world.cell,
         });
         if let Some(part) = view.part(recipe, cell)? {

@@ -37,6 +37,8 @@ mod samples;
 #[doc(hidden)]
 pub mod spec;
 mod target;
+#[doc(hidden)]
+pub mod tile_grid;
 mod work_dir;
 #[doc(hidden)]
 pub mod xyz;

@@ -406,7 +406,7 @@ fn slippy(longitude: f64, latitude: f64, zoom: u32) -> [f64; 2] {
 fn a_world_on_the_web_map_is_in_its_real_tiles() {
     const RADIUS: f64 = 6_378_137.0;
     const ZOOM: u32 = 15;
-    let pixel = super::xyz::cell_near(5.0, 256, None);
+    let pixel = super::tile_grid::cell_near(5.0, 256, None);
     // Vienna, with pixels between the samples and on them.
     let first = |at: f64| ((at / pixel).floor() + 0.5) * pixel;
     for (origin, is_exact) in [([1_822_000.0, 6_141_000.0], false), ([first(1_822_000.0), first(6_141_000.0)], true)] {

@@ -400,13 +400,13 @@ impl MapJob {
 
     /// Whether the layer is that of the biomes, which have colors and names of their own, unless a palette or a mapping
     /// to colors was chosen.
-    fn shows_biomes(&self, recipe: &Recipe) -> bool {
+    pub(super) fn shows_biomes(&self, recipe: &Recipe) -> bool {
         let has_own = self.palette.is_some() || self.range.is_some() || self.scale.is_some();
         !self.is_covered() && !has_own && biome_cover::classes(recipe).is_some_and(|(name, _)| name == self.layer)
     }
 
     /// The palette: the given one, otherwise that of the layer.
-    fn palette(&self, recipe: &Recipe) -> Palette {
+    pub(super) fn palette(&self, recipe: &Recipe) -> Palette {
         if let Some(palette) = &self.palette {
             return palette.clone();
         }
@@ -427,11 +427,7 @@ impl MapJob {
             );
             return Err(Error::new(ErrorKind::Request, message));
         }
-        let scale = self.scale.unwrap_or(match source.kind() {
-            LayerKind::Flow => Scale::Log,
-            LayerKind::Label => Scale::Labels,
-            _ => Scale::Linear,
-        });
+        let scale = self.scale.unwrap_or(scale_of(source.kind()));
         let unit = source.unit();
         let made = source.whole().map_err(|cause| file::explain("make", Path::new(&self.layer), &cause))?;
         let values = made.into_iter().next().unwrap_or_else(|| Grid::filled(*window, f32::NAN));
@@ -508,6 +504,15 @@ impl MapJob {
             MapColors::Biomes | MapColors::Classes => biome_cover::memory(window) as f64 + 12.0 * pixels,
         };
         (page + layer + cover) as u64
+    }
+}
+
+/// How values of a layer are mapped to colors.
+pub(super) fn scale_of(kind: LayerKind) -> Scale {
+    match kind {
+        LayerKind::Flow => Scale::Log,
+        LayerKind::Label => Scale::Labels,
+        _ => Scale::Linear,
     }
 }
 

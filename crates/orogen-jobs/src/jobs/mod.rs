@@ -18,6 +18,8 @@ pub mod grow;
 pub mod map;
 mod map_names;
 mod map_options;
+#[doc(hidden)]
+pub mod map_tiles;
 pub mod map_water;
 #[doc(hidden)]
 pub mod noise;

@@ -16,6 +16,8 @@ pub mod surface_picture;
 pub mod swatches;
 #[doc(hidden)]
 pub mod text;
+#[doc(hidden)]
+pub mod tile;
 
 pub use contact::{Sheet, Variant};
 pub use paint::Painter;

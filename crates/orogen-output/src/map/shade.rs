@@ -32,6 +32,9 @@ const HIGHLIGHT: f32 = 0.45;
 /// Strength of the shading of the sea floor relative to land.
 pub(crate) const UNDER_WATER: f32 = 0.35;
 
+/// Strength of the shading on colors of a layer, which must remain readable on a color bar.
+pub(crate) const ON_LAYER: f32 = 0.5;
+
 /// Brightness of the printed ground relative to its albedo: paper is viewed in less light than land.
 pub const PRINTED: f32 = 1.8;
 

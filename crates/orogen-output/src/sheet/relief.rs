@@ -5,14 +5,11 @@ use orogen_grid::parallel;
 use super::ground::{at_pixels, laid};
 use super::options::Shading;
 use super::ramp::Ramp;
-use crate::map::shade::{Lights, PRINTED, Shade, UNDER_WATER};
+use crate::map::shade::{Lights, ON_LAYER, PRINTED, Shade, UNDER_WATER};
 use orogen_grid::analysis::slope::{Gradient, extended, gradients_between};
 use orogen_grid::grid::Grid;
 use orogen_io::palette::color::{Encoder, Light};
 use orogen_io::palette::tint::Tint;
-
-/// Strength of the shading on colors of a layer, which must remain readable on the color bar.
-const ON_LAYER: f32 = 0.5;
 
 /// Swiss shading: contrast in the lowlands and on the summits, amount and color of the haze over the lowlands, and
 /// smoothing of the lowlands in pixels.
@@ -109,11 +106,15 @@ pub fn paint(
                 }
                 _ => shade.on(gradient),
             };
-            let lit = std::array::from_fn(|c| color[c] * (1.0 + (factor[c] - 1.0) * strength));
-            out[3 * i..3 * i + 3].copy_from_slice(&encoder.bytes(lit));
+            out[3 * i..3 * i + 3].copy_from_slice(&encoder.bytes(lit(color, factor, strength)));
         });
     });
     bytes
+}
+
+/// A color in the light of these factors, which count with `strength`.
+pub fn lit(color: Light, factor: Light, strength: f32) -> Light {
+    std::array::from_fn(|c| color[c] * (1.0 + (factor[c] - 1.0) * strength))
 }
 
 /// The lowest and the highest land, always two different numbers.
