@@ -36,6 +36,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step of
   window    clippy and build of the studio's window and of graphics cards
   wasm      the libraries built for WebAssembly, without threads; four presets under node, and a world without files
   remote    builds, caches and elevation models in an object store, moto's: the bytes of local files
+  serve     GDAL's drivers for WMTS and XYZ tiles, rasterio and NumPy read what `orogen serve` answers: the samples of exports
   presets   every preset against golden/presets.txt, at every SIMD level of this machine, on one thread or two
   numpy     NumPy reads .npy: the numbers of summary.json, and the orientation
   pillow    Pillow reads the pictures: grey values, the share of sea, animations
@@ -205,6 +206,7 @@ const CLIENTS: &[Client] = &[
         npm: &["pyright@1.1.414"],
     },
     Client { name: "remote", apt: &[], pip: &[NUMPY, RASTERIO, MOTO], npm: &[] },
+    Client { name: "serve", apt: &[], pip: &[NUMPY, RASTERIO], npm: &[] },
     Client {
         name: "azure",
         apt: &[("node", "nodejs"), ("npm", "npm")],
@@ -254,7 +256,7 @@ const PACKAGES: Step = Step {
 };
 const BUILD: Step = Step {
     name: "build",
-    about: "cargo build --release -p orogen-cli -p orogen-py, with object stores",
+    about: "cargo build --release -p orogen-cli -p orogen-py, with object stores and the server",
     group: Some(1),
     run: || sh(&mut cargo(&format!("build --quiet --release {}", remote::BUILT))),
 };
@@ -268,6 +270,7 @@ const STEPS: &[&Step] = &[
     &beside("wasm", "four presets made by the libraries built for WebAssembly", wasm::check_four),
     &beside("python", "the Python package in a new environment", python::check),
     &beside("remote", "builds, caches and heights in an object store, moto's", || script("remote")),
+    &beside("serve", "GDAL, rasterio and NumPy read what is served", || script("serve")),
     &beside("presets", "the presets' golden hashes at every level", presets::check),
     &beside("meshes", "the glTF validator, trimesh, meshio and admesh read meshes", || script("meshes")),
     &beside("water", "GDAL, SQLite and Shapely read rivers, lakes and watersheds", || script("water")),

@@ -7,7 +7,7 @@ use orogen::Level;
 use crate::bar::{Mode, set_mode};
 use crate::command::{
     analyze, blocks, build, cache, check, compare, completions, devices, explain, export, fit, generate, graph, grow,
-    locate, map, new, noise, ops, palettes, presets, refine, render, schema, studio, tilemap, variants,
+    locate, map, new, noise, ops, palettes, presets, refine, render, schema, serve, studio, tilemap, variants,
 };
 use crate::failure::Failure;
 
@@ -53,6 +53,8 @@ enum Command {
     Blocks(blocks::Args),
     /// Draw variants of a recipe side by side: several seeds, or a range of values of a parameter
     Variants(variants::Args),
+    /// Serve map tiles and windows of worlds over HTTP, for map programs, without building them first
+    Serve(serve::Args),
     /// Open the studio: a window with live preview, parameters, graph and text of a recipe
     Studio(studio::Args),
     /// Write a new recipe as a starting point
@@ -103,6 +105,7 @@ impl Cli {
             Command::Tilemap(args) => tilemap::run(&args),
             Command::Blocks(args) => blocks::run(&args),
             Command::Variants(args) => variants::run(&args),
+            Command::Serve(args) => serve::run(&args),
             Command::Studio(args) => studio::run(&args),
             Command::New(args) => new::run(&args),
             Command::Presets => presets::run(),

@@ -24,6 +24,7 @@ pub mod presets;
 pub mod refine;
 pub mod render;
 pub mod schema;
+pub mod serve;
 pub mod studio;
 pub mod tilemap;
 pub mod variants;

@@ -156,10 +156,13 @@ pub fn listed() -> BTreeSet<String> {
 
 #[test]
 fn every_command_is_in_a_table() {
-    // `studio` opens a window: tests/cli/others.rs and the tests of orogen-studio.
+    // `studio` opens a window: tests/cli/others.rs and the tests of orogen-studio. `serve` runs until it is
+    // interrupted: tests/cli/serve.rs and the tests of orogen-serve.
     let writers = WRITERS.iter().map(|writer| writer.arguments[0]);
-    let known: BTreeSet<String> =
-        writers.chain(TALKERS.iter().chain(STARTERS).chain(&["studio"]).copied()).map(str::to_string).collect();
+    let known: BTreeSet<String> = writers
+        .chain(TALKERS.iter().chain(STARTERS).chain(&["serve", "studio"]).copied())
+        .map(str::to_string)
+        .collect();
     let missing: Vec<String> = listed().difference(&known).cloned().collect();
     assert!(missing.is_empty(), "add to the tables in tests/cli/commands.rs: {missing:?}");
 }

@@ -41,6 +41,7 @@ mod progress;
 mod refine;
 mod render;
 mod scatter;
+mod serve;
 mod surfaces;
 mod tilemap;
 mod view;

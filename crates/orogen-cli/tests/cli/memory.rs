@@ -21,9 +21,10 @@ use crate::harness::Folder;
 #[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "the peak of a process is read from /proc"))]
 pub const MOST: f64 = 1.1;
 
-/// Commands that only hold a text or a page of fixed size in memory, and have no `--memory`.
-const SMALL: [&str; 10] =
-    ["cache", "devices", "presets", "new", "ops", "palettes", "schema", "studio", "completions", "help"];
+/// Commands that only hold a text or a page of fixed size in memory, and have no `--memory`; and `serve`, which runs
+/// until it is interrupted.
+const SMALL: [&str; 11] =
+    ["cache", "devices", "presets", "new", "ops", "palettes", "schema", "serve", "studio", "completions", "help"];
 
 /// Rough terrain with many contours, rivers and triangles.
 fn recipe(side: usize, last: &str) -> String {

@@ -28,6 +28,7 @@ fn zoom_near(cell: f64, tile: usize) -> u32 {
 }
 
 /// The side of a pixel at the equator, in metres of the map.
+#[must_use]
 pub fn pixel(zoom: u32, tile: usize) -> f64 {
     EQUATOR / (tile as f64 * f64::from(1 << zoom))
 }
@@ -40,6 +41,7 @@ pub fn cell_near(cell: f64, tile: usize, map: Option<&Georeference>) -> f64 {
 }
 
 /// The position of a world in Web Mercator.
+#[must_use]
 pub fn web_map(map: Option<&Georeference>) -> Option<&Georeference> {
     map.filter(|map| map.epsg() == Some(WEB_MERCATOR))
 }

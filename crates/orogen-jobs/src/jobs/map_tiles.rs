@@ -1,7 +1,8 @@
 //! Tiles of a map of a layer, painted as on a [sheet](super::map): in the layer's colors with relief shading.
 //!
-//! The colors are fitted once: to an overview of the world and to its middle at its own cell. The shading is fitted to
-//! the middle of the world at each cell, so that all zooms look alike and neighbors fit together.
+//! The colors are fitted once to an overview of the world; those of layers other than the heights also to its middle at
+//! its own cell. The shading is fitted to the middle of the world at each cell, so that all zooms look alike and
+//! neighbors fit together.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -65,20 +66,13 @@ impl MapTiles {
             (source.nature(), source.kind(), source.unit(), source.channels())
         };
         let is_own = world.unit(layer).is_ok();
-        let range_of = |layer: &str| -> Result<[f32; 2]> {
-            let mut range = NO_SAMPLES;
-            for window in &windows {
-                let grids = world.grids(&[layer], window, progress)?;
-                range = grids.iter().fold(range, |range, grid| extremes(range, grid.data()));
-            }
-            match range[0] <= range[1] {
-                true => Ok(range),
-                false => Err(request(format!("the layer `{layer}` has no finite sample"))),
-            }
-        };
         let tint = || {
+            let heights = first(world.grids(&[HEIGHT], &windows[0], progress)?, &windows[0]);
             let palette = MapJob::new(SheetFormat::Png).palette(recipe);
-            Ok::<Tint, Error>(Tint::between(&palette, range_of(HEIGHT)?, sea_level))
+            match heights.data().iter().any(|height| height.is_finite()) {
+                true => Ok(Tint::of(&palette, &heights, sea_level)),
+                false => Err(request("the layer `height` has no finite sample".into())),
+            }
         };
         let painter = if layer == HEIGHT {
             TilePainter::of_heights(tint()?)

@@ -1,0 +1,197 @@
+//! A request with the world that it is about.
+
+use std::collections::HashMap;
+use std::future::Future;
+use std::sync::Arc;
+
+use axum::body::Bytes;
+use axum::extract::rejection::RawPathParamsRejection;
+use axum::extract::{RawPathParams, State};
+use axum::http::{HeaderMap, Uri, header};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{MethodRouter, get};
+use orogen::grid::words;
+
+use crate::answer::{self, Life};
+use crate::desk::{Keep, Work};
+use crate::query::{Query, encoded};
+use crate::refusal::Refusal;
+use crate::served::{Frame, Served};
+use crate::server::Shared;
+
+/// A request.
+pub struct Call {
+    pub shared: Arc<Shared>,
+    pub query: Query,
+    pub headers: HeaderMap,
+    parts: HashMap<String, String>,
+    /// The host, if the address of the request has it.
+    authority: Option<String>,
+    /// Whether the path names the world.
+    is_named: bool,
+}
+
+/// A route that answers with this function.
+pub fn route<F, A>(answer: F) -> MethodRouter<Arc<Shared>>
+where
+    F: Fn(Call) -> A + Clone + Send + Sync + 'static,
+    A: Future<Output = Result<Response, Refusal>> + Send,
+{
+    let respond = move |State(shared): State<Arc<Shared>>,
+                        path: Result<RawPathParams, RawPathParamsRejection>,
+                        uri: Uri,
+                        headers: HeaderMap| {
+        let answer = answer.clone();
+        async move {
+            let limit = shared.limits.timeout;
+            let answered = async {
+                let path = path.map_err(|_| Refusal::bad("the path is not percent-encoded UTF-8"))?;
+                let parts = path.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
+                let query = Query::parse(uri.query().unwrap_or_default())?;
+                let authority = uri.authority().map(|host| host.as_str().to_string());
+                answer(Call::new(shared, query, headers, parts, authority)).await
+            };
+            let in_time = tokio::time::timeout(limit, answered).await;
+            in_time
+                .unwrap_or_else(|_| {
+                    Err(Refusal::busy(format!(
+                        "the answer takes longer than {} s; send the request again later, ask for fewer samples, or raise --timeout",
+                        limit.as_secs_f64()
+                    )))
+                })
+                .into_response()
+        }
+    };
+    get(respond)
+}
+
+impl Call {
+    fn new(
+        shared: Arc<Shared>,
+        query: Query,
+        headers: HeaderMap,
+        parts: HashMap<String, String>,
+        authority: Option<String>,
+    ) -> Call {
+        let is_named = parts.contains_key("world");
+        Call { shared, query, headers, parts, authority, is_named }
+    }
+
+    /// A part of the path; empty if the route does not have it.
+    pub fn part(&self, name: &str) -> &str {
+        self.parts.get(name).map_or("", String::as_str)
+    }
+
+    /// The world that the path names, or the only one.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn served(&self) -> Result<Arc<Served>, Refusal> {
+        let worlds = &self.shared.worlds;
+        let names = || worlds.iter().map(|world| world.name.as_str());
+        if !self.is_named {
+            return match worlds.as_slice() {
+                [only] => Ok(Arc::clone(only)),
+                _ => Err(Refusal::absent(format!(
+                    "several worlds are served; begin the path with the name of one: {}",
+                    words::list(names())
+                ))),
+            };
+        }
+        // Names are only ever looked up, never part of a path in the file system.
+        let asked = self.part("world");
+        let found = worlds.iter().find(|world| world.name == asked).cloned();
+        found.ok_or_else(|| {
+            let hint = match words::nearest(asked, names()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("there are {}", words::list(names())),
+            };
+            Refusal::absent(format!("no world or request is called `{asked}`; {hint}"))
+        })
+    }
+
+    /// The grid of tiles, `?grid=`.
+    ///
+    /// # Errors
+    /// If there is no such grid.
+    pub fn frame(&self) -> Result<Frame, Refusal> {
+        match self.query.get("grid") {
+            None => Ok(Frame::Web),
+            Some(name) => Frame::ALL.into_iter().find(|frame| frame.name() == name).ok_or_else(|| {
+                Refusal::bad(format!(
+                    "`grid` must be web (the tiles of web maps) or world (the square of the world), not `{name}`"
+                ))
+            }),
+        }
+    }
+
+    /// Whether answers are for this client only.
+    pub fn is_private(&self) -> bool {
+        self.shared.limits.token.is_some()
+    }
+
+    /// How long an answer may be used.
+    pub fn life(&self, served: &Served) -> Life {
+        if self.query.get("v") == Some(served.version.as_str()) { Life::Forever } else { Life::Checked }
+    }
+
+    /// The address of the server as the client knows it, with the name of the world if the path has it.
+    pub fn base(&self, served: &Served) -> String {
+        let plain = |host: &&str| {
+            !host.is_empty()
+                && host.len() < 256
+                && host.bytes().all(|byte| byte.is_ascii_alphanumeric() || b".-:[]_".contains(&byte))
+        };
+        let header = |name: &str| self.headers.get(name).and_then(|value| value.to_str().ok());
+        // With HTTP/2 the host is in the address.
+        let host = self.authority.as_deref().or(header(header::HOST.as_str())).filter(plain);
+        let host = host.map_or_else(|| self.shared.address(), str::to_string);
+        let scheme = if header("x-forwarded-proto") == Some("https") { "https" } else { "http" };
+        match self.is_named {
+            true => format!("{scheme}://{host}/{}", served.name),
+            false => format!("{scheme}://{host}"),
+        }
+    }
+
+    /// Parameters that links to other answers need: those of the request's grid, the version and the token.
+    pub fn link(&self, served: &Served, grid: Option<&str>) -> String {
+        let mut link = format!("?v={}", served.version);
+        if let Some(grid) = grid {
+            link += &format!("&grid={grid}");
+        }
+        if let Some(token) = self.query.get("token") {
+            link += &format!("&token={}", encoded(token));
+        }
+        link
+    }
+
+    /// The answer of some work, or that the client has it already. `tag` is what it depends on.
+    ///
+    /// # Errors
+    /// If too many others wait, or the work fails.
+    pub async fn worked(
+        &self,
+        served: &Served,
+        (key, keep): (String, Keep),
+        kind: &'static str,
+        work: impl AsyncFnOnce() -> Result<Work, Refusal>,
+    ) -> Result<Response, Refusal> {
+        let tag = answer::etag(&[key.as_bytes()]);
+        let (life, is_private) = (self.life(served), self.is_private());
+        if answer::is_known(&self.headers, &tag) {
+            return Ok(answer::not_modified(&tag, life, is_private));
+        }
+        let desk = &self.shared.desk;
+        let bytes: Bytes = match desk.cached(&key) {
+            Some(bytes) => bytes,
+            None => {
+                let _seat = desk.seat()?;
+                let work = work().await?;
+                desk.get(key, keep, || work).await?
+            }
+        };
+        let mut response = answer::part(&self.headers, &tag, bytes, kind)?;
+        answer::lasting(&mut response, &tag, life, is_private);
+        Ok(response)
+    }
+}

@@ -1,0 +1,6 @@
+//! Descriptions of a world, for people and for map programs.
+
+pub mod index;
+pub mod openapi;
+pub mod tilejson;
+pub mod wmts;

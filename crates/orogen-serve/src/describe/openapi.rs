@@ -1,0 +1,176 @@
+//! `/openapi.json`: all requests, for programs (OpenAPI 3.1).
+
+use axum::response::Response;
+use orogen::export::derived::list;
+use orogen::export::registry;
+use orogen::options::OptionSpec;
+use serde_json::{Map, Value, json};
+
+use crate::answer;
+use crate::call::Call;
+use crate::points::MAX_ALONG;
+use crate::refusal::Refusal;
+use crate::windows::FORMATS;
+
+/// A parameter of a request: its name, its schema and what it means.
+type Parameter = (&'static str, Value, &'static str);
+
+/// The answer.
+pub async fn openapi(call: Call) -> Result<Response, Refusal> {
+    call.query.only(&[])?;
+    let mut paths = Map::new();
+    let single = call.shared.worlds.len() == 1;
+    let prefixes: &[&str] = if single { &["", "/{world}"] } else { &["/{world}"] };
+    for prefix in prefixes {
+        for (path, about, kind, parameters) in requests() {
+            paths.insert(format!("{prefix}{path}"), operation(prefix, path, about, kind, parameters));
+        }
+    }
+    for (path, about, kind) in [
+        ("/", "Page that lists worlds, layers and addresses", "text/html"),
+        ("/healthz", "Whether the server lives; needs no token", "text/plain"),
+        ("/metrics", "Counts for Prometheus", "text/plain"),
+        ("/openapi.json", "This description", "application/json"),
+    ] {
+        paths.insert(path.into(), operation("", path, about, kind, Vec::new()));
+    }
+    let mut text = json!({
+        "openapi": "3.1.0",
+        "info": {
+            "title": "Orogen",
+            "description": "Terrain, computed when it is requested.",
+            "version": env!("CARGO_PKG_VERSION"),
+            "license": { "name": "MIT OR Apache-2.0", "identifier": "MIT OR Apache-2.0" },
+        },
+        "servers": [{ "url": "/" }],
+        "paths": paths,
+        "components": {
+            "schemas": { "Error": {
+                "type": "object",
+                "required": ["error"],
+                "properties": { "error": { "type": "string", "description": "What is wrong, where, and what to do" } },
+            } },
+            "securitySchemes": {
+                "bearer": { "type": "http", "scheme": "bearer" },
+                "token": { "type": "apiKey", "in": "query", "name": "token" },
+            },
+        },
+    });
+    if call.is_private() {
+        text["security"] = json!([{ "bearer": [] }, { "token": [] }]);
+    }
+    answer::text(&call.headers, "application/json", &text.to_string(), call.is_private())
+}
+
+/// The requests of a world: path, description, media type and parameters.
+fn requests() -> Vec<(&'static str, &'static str, &'static str, Vec<Parameter>)> {
+    let grid = || {
+        let schema = json!({ "type": "string", "enum": ["web", "world"], "default": "web" });
+        vec![("grid", schema, "Grid of tiles: that of web maps, or the square of the world")]
+    };
+    let layer = || {
+        ("layer", json!({ "type": "string", "default": "height" }), "Layer of the recipe, or derived from its heights")
+    };
+    let number = || json!({ "type": "number" });
+    let mut all = vec![
+        (
+            "/tiles/{layer}/{z}/{x}/{y}.png",
+            "Tile of a layer in its colors, with relief shading; `{y}@2x.png` has 512 pixels",
+            "image/png",
+            grid(),
+        ),
+        ("/terrarium/{z}/{x}/{y}.png", "Tile of heights: 256 R + G + B / 256 - 32768 metres", "image/png", grid()),
+        (
+            "/terrain-rgb/{z}/{x}/{y}.png",
+            "Tile of heights: (65536 R + 256 G + B) / 10 - 10000 metres",
+            "image/png",
+            grid(),
+        ),
+        (
+            "/tilejson/{layer}.json",
+            "TileJSON of a layer, of `terrarium` or of `terrain-rgb`",
+            "application/json",
+            grid(),
+        ),
+        ("/wmts", "Capabilities of WMTS 1.0.0 with addresses of tiles", "application/xml", Vec::new()),
+        (
+            "/height",
+            "Value of a layer at a point",
+            "application/json",
+            vec![("x", number(), "Easting, required"), ("y", number(), "Northing, required"), layer()],
+        ),
+        (
+            "/profile",
+            "Values of a layer along a line",
+            "application/json",
+            vec![
+                ("points", json!({ "type": "string" }), "Corners of the line, x,y;x,y, required"),
+                (
+                    "samples",
+                    json!({ "type": "integer", "minimum": 2, "maximum": MAX_ALONG, "default": 256 }),
+                    "Number of points",
+                ),
+                layer(),
+            ],
+        ),
+    ];
+    for ((format, kind), path) in FORMATS.into_iter().zip(["/window.tif", "/window.png", "/window.npy"]) {
+        let size = || json!({ "type": "integer", "minimum": 1 });
+        let mut parameters = vec![
+            ("bbox", json!({ "type": "string" }), "West,south,east,north; the whole world if it is left out"),
+            ("width", size(), "Samples from west to east"),
+            ("height", size(), "Samples from north to south"),
+            (
+                "cell",
+                json!({ "type": "number", "exclusiveMinimum": 0 }),
+                "Metres between samples; the world's cell if it is left out",
+            ),
+            layer(),
+        ];
+        let own = registry::named(format).map_or(&[][..], |format| format.options);
+        parameters.extend(own.iter().filter(|spec| spec.name != "no-sidecar").map(of_option));
+        parameters.extend(list::options().into_iter().map(|(spec, _)| of_option(spec)));
+        let about = match format {
+            "tif" => "Window as a Cloud-Optimized GeoTIFF of f32",
+            "png" => "Window as a PNG of 16 bits",
+            _ => "Window as a NumPy array of f32",
+        };
+        all.push((path, about, kind, parameters));
+    }
+    all
+}
+
+/// An option of a format or a layer as a parameter.
+fn of_option(spec: &OptionSpec) -> Parameter {
+    (spec.name, json!({ "type": "string" }), spec.about)
+}
+
+fn operation(prefix: &str, path: &str, about: &str, kind: &str, parameters: Vec<Parameter>) -> Value {
+    let whole = format!("{prefix}{path}");
+    let mut all: Vec<Value> = Vec::new();
+    for name in ["world", "layer", "z", "x", "y"] {
+        if whole.contains(&format!("{{{name}}}")) {
+            let kind = if matches!(name, "world" | "layer") { "string" } else { "integer" };
+            all.push(json!({ "name": name, "in": "path", "required": true, "schema": { "type": kind } }));
+        }
+    }
+    for (name, schema, about) in parameters {
+        let is_required = about.ends_with("required");
+        all.push(
+            json!({ "name": name, "in": "query", "required": is_required, "schema": schema, "description": about }),
+        );
+    }
+    let error = |about: &str| json!({ "description": about, "content": { "application/json": { "schema": { "$ref": "#/components/schemas/Error" } } } });
+    json!({ "get": {
+        "summary": about,
+        "parameters": all,
+        "responses": {
+            "200": { "description": about, "content": { kind: {} } },
+            "304": { "description": "The client has it already" },
+            "400": error("A parameter is wrong"),
+            "404": error("There is no such world, layer or tile"),
+            "413": error("More samples or memory than a request may have"),
+            "503": error("Too many requests are waiting, or the answer takes too long; see `Retry-After`"),
+        },
+    } })
+}

@@ -1,0 +1,43 @@
+//! Tests of the whole server, over loopback.
+
+mod bad_requests;
+mod client;
+mod descriptions;
+mod samples;
+mod work;
+
+/// A bounded world without a CRS.
+const HILLS: &str = r#"
+orogen = 1
+about = "Hills & <valleys>"
+[world]
+size = [5120, 2560]
+cell = 10
+sea_level = 20
+[nodes.noise]
+op = "fbm"
+wavelength = 900
+[nodes.land]
+op = "remap"
+source = "noise"
+to = [0, 300]
+[outputs]
+height = "land"
+"#;
+
+/// An unbounded world.
+const PLAIN: &str = r#"
+orogen = 1
+[world]
+cell = 10
+[nodes.noise]
+op = "fbm"
+wavelength = 900
+[outputs]
+height = "noise"
+"#;
+
+/// The head of a world at a place.
+fn placed(crs: &str, origin: [f64; 2]) -> String {
+    HILLS.replace("cell = 10", &format!("cell = 10\ncrs = \"{crs}\"\norigin = [{}, {}]", origin[0], origin[1]))
+}
