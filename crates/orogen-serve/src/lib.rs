@@ -29,6 +29,7 @@ mod connection;
 mod describe;
 mod desk;
 mod metrics;
+mod places;
 mod points;
 mod query;
 mod refusal;

@@ -14,10 +14,10 @@ use axum::routing::get;
 use crate::call::{Call, route};
 use crate::refusal::Refusal;
 use crate::server::Shared;
-use crate::{answer, describe, points, tiles, windows};
+use crate::{answer, describe, places, points, tiles, windows};
 
 /// First parts of paths that no world can have as its name.
-pub const RESERVED: [&str; 13] = [
+pub const RESERVED: [&str; 14] = [
     "tiles",
     "terrarium",
     "terrain-rgb",
@@ -26,6 +26,7 @@ pub const RESERVED: [&str; 13] = [
     "window",
     "height",
     "profile",
+    "locate",
     "vector",
     "map",
     "healthz",
@@ -62,7 +63,8 @@ pub fn router(shared: &Arc<Shared>) -> Router {
             .route(&format!("{prefix}/window.png"), route(windows::png))
             .route(&format!("{prefix}/window.npy"), route(windows::npy))
             .route(&format!("{prefix}/height"), route(points::height))
-            .route(&format!("{prefix}/profile"), route(points::profile));
+            .route(&format!("{prefix}/profile"), route(points::profile))
+            .route(&format!("{prefix}/locate"), route(places::locate));
     }
     router
         .fallback(async || Refusal::absent("there is no such request; / and /openapi.json list all of them"))

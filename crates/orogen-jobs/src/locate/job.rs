@@ -141,6 +141,12 @@ impl LocateJob {
         LocateJob { cell, ..self }
     }
 
+    /// The layers that are compared; none for objects.
+    pub fn layers(&self) -> impl Iterator<Item = &str> {
+        let all = self.conditions.iter().map(|condition| condition.name.as_str()).chain(self.largest.as_deref());
+        all.filter(|_| self.objects().is_none())
+    }
+
     fn objects(&self) -> Option<&'static VectorLayer> {
         vector_list::named(self.find)
     }

@@ -3,11 +3,13 @@
 use axum::response::Response;
 use orogen::export::derived::list;
 use orogen::export::registry;
+use orogen::locate::LocateJob;
 use orogen::options::OptionSpec;
 use serde_json::{Map, Value, json};
 
 use crate::answer;
 use crate::call::Call;
+use crate::places::CELL;
 use crate::points::MAX_ALONG;
 use crate::refusal::Refusal;
 use crate::windows::FORMATS;
@@ -114,6 +116,9 @@ fn requests() -> Vec<(&'static str, &'static str, &'static str, Vec<Parameter>)>
             ],
         ),
     ];
+    let cell = (CELL, number(), "Distance between the samples that are searched, in metres");
+    let search = LocateJob::OPTIONS.iter().map(of_option).chain([cell]).collect();
+    all.push(("/locate", "Nearest places that satisfy conditions", "application/json", search));
     for ((format, kind), path) in FORMATS.into_iter().zip(["/window.tif", "/window.png", "/window.npy"]) {
         let size = || json!({ "type": "integer", "minimum": 1 });
         let mut parameters = vec![

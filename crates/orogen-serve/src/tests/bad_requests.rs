@@ -56,6 +56,13 @@ fn what_is_wrong_is_a_sentence() {
         ("/profile", 400, "`points` must be 2 to 256"),
         ("/profile?points=0,0;9,-9&samples=1", 400, "from 2 to 4096"),
         ("/profile?points=0,0;9,-9&samples=99999", 400, "from 2 to 4096"),
+        ("/locate?where=height", 400, "such as `height > 3000`"),
+        ("/locate?where=hieght%3E3", 404, "did you mean `height`?"),
+        ("/locate?find=lakes&where=aera%3E3", 400, "did you mean `area`?"),
+        ("/locate?find=caves", 400, "caves"),
+        ("/locate?cell=-1", 400, "cell size must be"),
+        ("/locate?cell=0.001", 400, "a larger cell"),
+        ("/locate?counts=2", 400, "did you mean `count`?"),
         ("/metrics?x=1", 400, "this request has none"),
     ] {
         let reply = server.get(path);
@@ -110,7 +117,7 @@ impl Random {
 
 #[test]
 fn random_requests_have_an_answer_and_the_server_lives_on() {
-    const WORDS: [&str; 44] = [
+    const WORDS: [&str; 45] = [
         "hills",
         "plain",
         "tiles",
@@ -123,6 +130,7 @@ fn random_requests_have_an_answer_and_the_server_lives_on() {
         "window.npy",
         "height",
         "profile",
+        "locate",
         "height.json",
         "slope",
         "0",

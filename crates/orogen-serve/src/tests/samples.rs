@@ -7,6 +7,8 @@ use orogen::export::{ExportJob, registry};
 use orogen::io::file::OutputPolicy;
 use orogen::io::format::encoding::Encoding;
 use orogen::io::test_folder::TestFolder;
+use orogen::locate::LocateJob;
+use orogen::options::Options;
 use orogen::{Progress, Window};
 use serde_json::{Value, json};
 
@@ -139,6 +141,21 @@ fn points_are_those_of_the_library() {
     let heights = world.window("height", &Window::new(256, 1, 10.0).at(0, 10)).unwrap();
     let values: Vec<f32> = serde_json::from_value(values["values"].clone()).unwrap();
     assert_eq!(values, heights.data());
+}
+
+#[test]
+fn places_are_those_of_the_library() {
+    let (server, world) = (start(&[("hills", HILLS)], &[]), world(HILLS));
+    let reply = server.get("/locate?where=height%3E200&near=1000,-1000&count=2");
+    let options = [("where", "height>200"), ("near", "1000,-1000"), ("count", "2")];
+    let job = LocateJob::new(&Options::of(LocateJob::OPTIONS, options).unwrap()).unwrap();
+    let found = job.run(&world, &Progress::none()).unwrap();
+    assert_eq!((reply.status, found.places.len()), (200, 2));
+    assert_eq!(reply.body, found.to_json().as_bytes());
+    // A layer that is derived from the heights, and a copy that the client has already.
+    let reply = server.get("/locate?where=slope%3C3+and+height%3E100");
+    assert!(reply.json()["places"][0]["values"]["slope"].as_f64().unwrap() < 3.0);
+    assert_eq!(server.get("/locate?find=summits&largest=height").json()["places"].as_array().unwrap().len(), 1);
 }
 
 #[test]
