@@ -17,7 +17,7 @@ use crate::desk::{Keep, Work};
 use crate::query::{Query, encoded};
 use crate::refusal::Refusal;
 use crate::served::{Frame, Served};
-use crate::server::Shared;
+use crate::shared::Shared;
 
 /// A request.
 pub struct Call {

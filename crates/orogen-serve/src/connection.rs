@@ -22,8 +22,7 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::Semaphore;
 use tokio::time::{Sleep, sleep};
 
-use crate::routes::Client;
-use crate::server::{GRACE, Shared};
+use crate::shared::{Client, GRACE, Shared};
 
 /// Open connections; more wait until one of them ends.
 const CONNECTIONS: usize = 512;

@@ -36,6 +36,7 @@ mod refusal;
 mod routes;
 mod served;
 mod server;
+mod shared;
 mod tiles;
 mod windows;
 

@@ -5,7 +5,9 @@ use std::fmt::Write as _;
 use std::sync::atomic::Ordering;
 use std::sync::{Mutex, PoisonError};
 
-use crate::server::Shared;
+use orogen::Session;
+
+use crate::desk::Desk;
 
 /// Upper ends of the classes of durations, in seconds.
 const ENDS: [f64; 12] = [0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 60.0];
@@ -34,7 +36,7 @@ impl Metrics {
     }
 
     /// The text.
-    pub fn text(&self, shared: &Shared) -> String {
+    pub fn text(&self, desk: &Desk, session: &Session) -> String {
         let routes = self.0.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let mut text = String::new();
         let head = |name: &str, kind: &str, about: &str| format!("# HELP {name} {about}\n# TYPE {name} {kind}\n");
@@ -55,7 +57,6 @@ impl Metrics {
             let _ = writeln!(text, "orogen_request_seconds_sum{{route=\"{name}\"}} {}", route.seconds);
             let _ = writeln!(text, "orogen_request_seconds_count{{route=\"{name}\"}} {sum}");
         }
-        let (desk, session) = (&shared.desk, &shared.session);
         let total = |count: &std::sync::atomic::AtomicU64| count.load(Ordering::Relaxed);
         let budget = session.budget();
         let used = budget.limit().zip(budget.unused()).map(|(limit, unused)| limit - unused);

@@ -13,7 +13,7 @@ use axum::routing::get;
 
 use crate::call::{Call, route};
 use crate::refusal::Refusal;
-use crate::server::Shared;
+use crate::shared::{Client, Shared};
 use crate::{answer, describe, places, points, tiles, windows};
 
 /// First parts of paths that no world can have as its name.
@@ -36,10 +36,6 @@ pub const RESERVED: [&str; 14] = [
 
 /// Path of the check that the server lives, which needs no token.
 const HEALTH: &str = "/healthz";
-
-/// The address of a client.
-#[derive(Debug, Clone, Copy)]
-pub struct Client(pub SocketAddr);
 
 /// The router of all requests.
 pub fn router(shared: &Arc<Shared>) -> Router {
@@ -79,7 +75,7 @@ pub fn router(shared: &Arc<Shared>) -> Router {
 /// `/metrics`.
 async fn metrics(call: Call) -> Result<Response, Refusal> {
     call.query.only(&[])?;
-    let text = call.shared.metrics.text(&call.shared);
+    let text = call.shared.metrics.text(&call.shared.desk, &call.shared.session);
     answer::text(&call.headers, "text/plain; version=0.0.4; charset=utf-8", &text, call.is_private())
 }
 

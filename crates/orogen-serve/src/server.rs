@@ -15,6 +15,7 @@ use crate::desk::Desk;
 use crate::metrics::Metrics;
 use crate::routes::{RESERVED, router};
 use crate::served::Served;
+use crate::shared::{GRACE, Limits, Log, Shared};
 
 const OPTIONS: &[OptionSpec] = &[
     OptionSpec::new("port", "N", ValueKind::Whole(0, 65_535))
@@ -46,39 +47,6 @@ const CACHE_SHARE: u64 = 8;
 
 /// Threads that read and write requests, beside those that compute.
 const SPEAKERS: usize = 2;
-
-/// How long running answers may take to end when the server stops.
-pub const GRACE: Duration = Duration::from_secs(10);
-
-/// Limits of requests.
-#[derive(Debug, Clone)]
-pub struct Limits {
-    pub token: Option<String>,
-    pub samples: usize,
-    pub timeout: Duration,
-    queue: usize,
-}
-
-/// Receives lines of the log.
-pub type Log = Box<dyn Fn(&str) + Send + Sync>;
-
-/// What all requests share.
-pub struct Shared {
-    pub worlds: Vec<Arc<Served>>,
-    pub desk: Arc<Desk>,
-    pub limits: Limits,
-    pub metrics: Metrics,
-    pub log: Log,
-    pub session: Session,
-    address: OnceLock<SocketAddr>,
-}
-
-impl Shared {
-    /// The address that the server listens on.
-    pub fn address(&self) -> String {
-        self.address.get().map_or_else(|| "localhost".into(), SocketAddr::to_string)
-    }
-}
 
 /// A server of terrain over HTTP.
 ///

@@ -8,7 +8,8 @@ use orogen::recipe::Recipe;
 use orogen::value::Value;
 use orogen::world::HEIGHT;
 
-use super::edit::{Edit, Reader};
+use super::edit::Edit;
+use super::reader::{Reader, read_by};
 use super::{drawing, names};
 
 /// Maximum number of steps within the relief of a land.
@@ -93,24 +94,6 @@ fn first_land(recipe: &Recipe, is_land: bool) -> Vec<Reader> {
         .filter(|(_, input)| matches!(input, Input::Value(_)))
         .map(|(name, _)| Reader::Output(name.clone()))
         .collect()
-}
-
-/// The node or layer that a reader reads.
-pub(super) fn read_by(recipe: &Recipe, reader: &Reader) -> Option<String> {
-    let input = match reader {
-        Reader::Output(name) => {
-            recipe.output_inputs().iter().find(|(output, _)| output == name).map(|(_, input)| input)
-        }
-        Reader::Input { node, key } => {
-            let named = recipe.nodes().iter().find(|named| named.name == *node)?;
-            let own = named.node.inputs().iter().position(|input| input.name == key);
-            own.map(|i| named.node.input(i)).or((key == "mask").then_some(&named.mask))
-        }
-    };
-    match input? {
-        Input::Node(source) => Some(source.clone()),
-        _ => None,
-    }
 }
 
 /// The outputs that read a node, if no node does.

@@ -6,7 +6,8 @@ use orogen::recipe::Recipe;
 use orogen::value::Value;
 
 use super::brush::round_number;
-use super::edit::{Edit, Reader};
+use super::edit::Edit;
+use super::reader::Reader;
 use super::{drawing, names};
 
 /// The op that fills lakes, and its input.

@@ -11,6 +11,7 @@ use toml_edit::{DocumentMut, Item, Table};
 
 use super::ground::{Ground, set_colors};
 use super::kept::Kept;
+use super::reader::Reader;
 use super::references::{Change, Site, change};
 use super::reroutes::{self, Reroute};
 use super::strokes::{self, Placement};
@@ -67,16 +68,6 @@ pub enum Edit {
     Reroute(Reroute),
     /// Several edits, one after another, which are undone together. They rename nothing.
     Several(Vec<Edit>),
-}
-
-/// What reads a node.
-#[derive(Debug, Clone, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names of fields say what they are")]
-pub enum Reader {
-    /// An input of a node, or its `mask`.
-    Input { node: String, key: String },
-    /// An output of the recipe.
-    Output(String),
 }
 
 impl Edit {

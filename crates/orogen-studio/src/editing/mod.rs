@@ -14,6 +14,7 @@ pub mod history;
 pub mod kept;
 pub mod names;
 pub mod notes;
+pub mod reader;
 mod references;
 pub mod reroutes;
 pub mod strokes;

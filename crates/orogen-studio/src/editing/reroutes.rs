@@ -6,9 +6,8 @@ use orogen::recipe::Recipe;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value as Json;
 
-use super::adding::read_by;
-use super::edit::Reader;
 use super::groups;
+use super::reader::{Reader, read_by};
 
 /// Maximum number of points of a wire; further ones are ignored.
 pub const MAX_POINTS: usize = 64;

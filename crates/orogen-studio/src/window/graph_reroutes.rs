@@ -6,7 +6,7 @@ use eframe::egui::{
 
 use super::action::Action;
 use super::graph_panel::Graph;
-use super::graph_wires::{Route, near};
+use super::graph_route::{Moved, Route, near};
 use super::wire_curve;
 use crate::catalogue::Language;
 use crate::editing::edit::Edit;
@@ -26,47 +26,6 @@ const ARROWS: [(Key, Vec2); 4] = [
     (Key::ArrowUp, Vec2::UP),
     (Key::ArrowDown, Vec2::DOWN),
 ];
-
-/// State of the reroutes.
-#[derive(Default)]
-pub(super) struct Reroutes {
-    /// The selected point: its wire and its number.
-    selected: Option<(Reroute, usize)>,
-    /// The point that is being moved.
-    moved: Option<Moved>,
-    /// The wire whose menu is open, and where it was clicked.
-    menu: Option<(Reroute, Pos2)>,
-}
-
-/// A point that is being moved. Its position is in the recipe when the gesture ends.
-struct Moved {
-    /// The wire with its present points.
-    reroute: Reroute,
-    /// The number of the point.
-    point: usize,
-    /// Its position in the graph.
-    at: Pos2,
-}
-
-impl Reroutes {
-    /// The present points of a wire.
-    pub(super) fn fill(&self, wire: &mut Reroute, studio: &Studio) {
-        let moved = self.moved.as_ref().map(|moved| &moved.reroute);
-        let mut all = moved.into_iter().chain(&studio.document.kept().reroutes);
-        if let Some(known) = all.find(|known| known.is_same_wire(wire)) {
-            wire.points.clone_from(&known.points);
-        }
-    }
-
-    /// Selects no point.
-    pub(super) fn deselect(&mut self) {
-        self.selected = None;
-    }
-
-    fn is_selected(&self, route: &Route, point: usize) -> bool {
-        self.selected.as_ref().is_some_and(|(wire, k)| *k == point && wire.is_same_wire(&route.reroute))
-    }
-}
 
 /// The edit that removes a point of a wire.
 fn without(reroute: &Reroute, point: usize) -> Edit {

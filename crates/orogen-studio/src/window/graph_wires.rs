@@ -7,32 +7,13 @@ use orogen::declare::Input;
 use super::action::Action;
 use super::graph_box;
 use super::graph_panel::Graph;
+use super::graph_route::Route;
 use super::wire_curve::{self, Piece};
-use crate::editing::edit::{Edit, Reader};
+use crate::editing::edit::Edit;
+use crate::editing::reader::Reader;
 use crate::editing::reroutes::Reroute;
 use crate::studio::Studio;
 use crate::view::scene::{End, Kind, Scene, Wire};
-
-/// The distance from a wire within which a click chooses it, in points.
-const NEAR: f32 = 7.0;
-
-/// A wire on the screen.
-pub(super) struct Route {
-    wire: Wire,
-    /// The wire and its points, as the recipe keeps them.
-    pub(super) reroute: Reroute,
-    pub(super) ends: [Pos2; 2],
-    /// The positions of its points.
-    pub(super) points: Vec<Pos2>,
-    pub(super) pieces: Vec<Piece>,
-}
-
-/// The wire at a position.
-pub(super) fn near(routes: &[Route], at: Pos2) -> Option<&Route> {
-    let distances = routes.iter().filter_map(|route| Some((wire_curve::nearest(&route.pieces, at)?.2, route)));
-    let near = distances.filter(|(distance, _)| *distance < NEAR).min_by(|a, b| a.0.total_cmp(&b.0));
-    near.map(|(_, route)| route)
-}
 
 impl Graph {
     /// The wires on the screen.

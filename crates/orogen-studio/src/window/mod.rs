@@ -21,6 +21,7 @@ mod graph_menu;
 pub mod graph_panel;
 mod graph_places;
 mod graph_reroutes;
+mod graph_route;
 pub mod graph_search;
 mod graph_wires;
 pub mod ground;

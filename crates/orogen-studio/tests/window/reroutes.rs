@@ -5,7 +5,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use orogen::io::test_folder::TestFolder;
 use orogen_studio::catalogue::Language;
-use orogen_studio::editing::edit::Reader;
+use orogen_studio::editing::reader::Reader;
 use orogen_studio::window::app::App;
 
 use super::{click_at, drag_along, press, studio, until_done, window};

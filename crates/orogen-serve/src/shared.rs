@@ -1,0 +1,48 @@
+//! What all requests share: the worlds, the limits, and what is counted.
+
+use std::net::SocketAddr;
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
+
+use orogen::Session;
+
+use crate::desk::Desk;
+use crate::metrics::Metrics;
+use crate::served::Served;
+
+/// How long running answers may take to end when the server stops.
+pub const GRACE: Duration = Duration::from_secs(10);
+
+/// Limits of requests.
+#[derive(Debug, Clone)]
+pub struct Limits {
+    pub token: Option<String>,
+    pub samples: usize,
+    pub timeout: Duration,
+    pub queue: usize,
+}
+
+/// Receives lines of the log.
+pub type Log = Box<dyn Fn(&str) + Send + Sync>;
+
+/// What all requests share.
+pub struct Shared {
+    pub worlds: Vec<Arc<Served>>,
+    pub desk: Arc<Desk>,
+    pub limits: Limits,
+    pub metrics: Metrics,
+    pub log: Log,
+    pub session: Session,
+    pub address: OnceLock<SocketAddr>,
+}
+
+impl Shared {
+    /// The address that the server listens on.
+    pub fn address(&self) -> String {
+        self.address.get().map_or_else(|| "localhost".into(), SocketAddr::to_string)
+    }
+}
+
+/// The address of a client.
+#[derive(Debug, Clone, Copy)]
+pub struct Client(pub SocketAddr);
