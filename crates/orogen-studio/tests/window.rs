@@ -263,6 +263,20 @@ fn sizes_from_tiny_to_large_are_drawn() {
     }
 }
 
+/// Clicks twice, as fast as for a double click.
+fn double_click(harness: &mut Harness<'_, App>, at: Pos2) {
+    harness.event(Event::PointerMoved(at));
+    harness.run_steps(1);
+    // In a single step, because separate steps are further apart than the clicks of a double click.
+    for pressed in [true, false, true, false] {
+        let button = PointerButton::Primary;
+        let click = Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE };
+        harness.input_mut().events.push(click);
+    }
+    // So that the next click is none of them.
+    harness.run_steps(30);
+}
+
 /// Presses and releases the pointer button at a position.
 fn click_at(harness: &mut Harness<'_, App>, at: Pos2) {
     harness.event(Event::PointerMoved(at));
@@ -348,15 +362,7 @@ fn colors_are_chosen_and_edited() {
     let Coloring::Edited(before) = studio(&harness).look.coloring.clone() else { panic!() };
     let bar = harness.get_by_label("color ramp").rect();
     let at = bar.min + bar.size() * egui::vec2(0.31, 0.3);
-    harness.event(Event::PointerMoved(at));
-    harness.run_steps(1);
-    // In a single step, because separate steps are further apart than the clicks of a double click.
-    for pressed in [true, false, true, false] {
-        let button = PointerButton::Primary;
-        let click = Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE };
-        harness.input_mut().events.push(click);
-    }
-    harness.run_steps(3);
+    double_click(&mut harness, at);
     let Coloring::Edited(after) = studio(&harness).look.coloring.clone() else { panic!() };
     assert_eq!(after.stops.len(), before.stops.len() + 1);
     harness.get_by_label("Remove").click();

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
+use super::escape::escaped;
 use super::tilejson::tiles_of;
 use crate::answer;
 use crate::call::Call;
@@ -29,7 +30,7 @@ pub async fn server(call: Call) -> Result<Response, Refusal> {
     );
     let token = call.query.get("token").map_or(String::new(), |token| format!("?token={}", encoded(token)));
     for world in &call.shared.worlds {
-        let (name, title) = (html(&world.name), html(world.title()));
+        let (name, title) = (escaped(&world.name), escaped(world.title()));
         // Writing to a string cannot fail.
         let _ = writeln!(body, "<tr><td><a href=\"/{name}/{token}\">{name}</a><td>{title}</tr>");
     }
@@ -44,14 +45,18 @@ pub async fn world(call: Call) -> Result<Response, Refusal> {
 }
 
 fn world_body(call: &Call, served: &Served) -> Result<String, Refusal> {
-    let (base, link) = (html(&call.base(served)), html(&call.link(served, None)));
+    let (base, link) = (escaped(&call.base(served)), escaped(&call.link(served, None)));
     let token = call.query.get("token").map_or(String::new(), |token| format!("?token={}", encoded(token)));
-    let and = |query: &str| html(&format!("?{query}{}", token.replacen('?', "&", 1)));
-    let token = html(&token);
+    let and = |query: &str| escaped(&format!("?{query}{}", token.replacen('?', "&", 1)));
+    let token = escaped(&token);
     let spec = &served.recipe().world;
     let size = spec.size.map_or_else(|| "unbounded".into(), |[width, height]| format!("{width} x {height} m"));
-    let mut body =
-        format!("<h1>{}</h1>\n<p>{}</p>\n<p>{size}, cell {} m", html(&served.name), html(served.title()), spec.cell);
+    let mut body = format!(
+        "<h1>{}</h1>\n<p>{}</p>\n<p>{size}, cell {} m",
+        escaped(&served.name),
+        escaped(served.title()),
+        spec.cell
+    );
     if let Some(code) = served.map().and_then(|map| map.epsg()) {
         let _ = write!(body, ", EPSG:{code}");
     }
@@ -61,7 +66,7 @@ fn world_body(call: &Call, served: &Served) -> Result<String, Refusal> {
             body,
             "<p><img src=\"{base}/tiles/{}/0/0/0.png{}\" alt=\"The whole world\"></p>",
             served.layers().first().map_or(String::new(), |layer| encoded(&layer.name)),
-            html(&call.link(served, Some("world"))),
+            escaped(&call.link(served, Some("world"))),
         );
     }
     body += "<h2>Addresses</h2>\n<table><tr><th>For<th>Address</tr>\n";
@@ -79,20 +84,20 @@ fn world_body(call: &Call, served: &Served) -> Result<String, Refusal> {
     body += "</table>\n<h2>Layers</h2>\n<table><tr><th>Layer<th>Description<th>Tiles</tr>\n";
     for layer in served.layers() {
         let (path, _) = tiles_of(&layer.name);
-        let unit = if layer.unit.is_empty() { String::new() } else { format!(" ({})", html(layer.unit)) };
+        let unit = if layer.unit.is_empty() { String::new() } else { format!(" ({})", escaped(layer.unit)) };
         let _ = writeln!(
             body,
             "<tr><td><a href=\"{base}/tilejson/{}.json{token}\">{}</a><td>{}{unit}<td><code>{base}/{path}/{{z}}/{{x}}/{{y}}.png{link}</code></tr>",
             encoded(&layer.name),
-            html(&layer.name),
-            html(&layer.about),
+            escaped(&layer.name),
+            escaped(&layer.about),
         );
     }
     Ok(body + "</table>\n")
 }
 
 fn page(call: &Call, title: &str, body: &str) -> Result<Response, Refusal> {
-    let title = html(title);
+    let title = escaped(title);
     let text = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">\
          <title>{title}</title><style>{STYLE}</style></head><body>\n{body}</body></html>\n"
@@ -103,20 +108,4 @@ fn page(call: &Call, title: &str, body: &str) -> Result<Response, Refusal> {
     answer::set(response.headers_mut(), header::CONTENT_SECURITY_POLICY, policy);
     answer::set(response.headers_mut(), header::REFERRER_POLICY, "no-referrer");
     Ok(if response.status() == StatusCode::NOT_MODIFIED { response } else { response.into_response() })
-}
-
-/// Escapes a text for HTML.
-fn html(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            c => out.push(c),
-        }
-    }
-    out
 }

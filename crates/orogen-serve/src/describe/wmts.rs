@@ -6,6 +6,7 @@ use axum::response::Response;
 use orogen::builder::tile_grid::{EQUATOR, pixel};
 use orogen::io::format::encoding::Encoding;
 
+use super::escape::escaped;
 use super::tilejson::tiles_of;
 use crate::answer;
 use crate::call::Call;
@@ -28,22 +29,6 @@ pub async fn capabilities(call: Call) -> Result<Response, Refusal> {
     }
     let text = text(&call, &served)?;
     answer::text(&call.headers, "application/xml", &text, call.is_private())
-}
-
-/// Escapes a text for XML. Characters that XML cannot have are left out.
-fn xml(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            c if c.is_control() && !matches!(c, '\n' | '\t') => {}
-            c => out.push(c),
-        }
-    }
-    out
 }
 
 /// A set of tile matrices: a grid of tiles in coordinates of a map.
@@ -90,7 +75,7 @@ fn text(call: &Call, served: &Served) -> Result<String, Refusal> {
          xmlns:ows=\"http://www.opengis.net/ows/1.1\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" version=\"1.0.0\">\n\
          <ows:ServiceIdentification><ows:Title>{}</ows:Title><ows:ServiceType>OGC WMTS</ows:ServiceType>\
          <ows:ServiceTypeVersion>1.0.0</ows:ServiceTypeVersion></ows:ServiceIdentification>\n<Contents>\n",
-        xml(served.title())
+        escaped(served.title())
     );
     let encodings = Encoding::ALL.into_iter().filter(|_| served.has_heights());
     let encodings =
@@ -101,13 +86,13 @@ fn text(call: &Call, served: &Served) -> Result<String, Refusal> {
     for (name, about) in &layers {
         let (path, _) = tiles_of(name);
         // The version comes first, so that the template of the grid is a value of its own.
-        let link = xml(&call.link(served, Some("{TileMatrixSet}")));
+        let link = escaped(&call.link(served, Some("{TileMatrixSet}")));
         let _ = write!(
             text,
             "<Layer><ows:Title>{name}</ows:Title><ows:Abstract>{}</ows:Abstract>\
              <ows:WGS84BoundingBox><ows:LowerCorner>{west} {south}</ows:LowerCorner><ows:UpperCorner>{east} {north}</ows:UpperCorner></ows:WGS84BoundingBox>",
-            xml(about),
-            name = xml(name),
+            escaped(about),
+            name = escaped(name),
         );
         for MatrixSet { crs, bounds: [west, south, east, north], .. } in &sets {
             let _ = write!(
@@ -119,7 +104,7 @@ fn text(call: &Call, served: &Served) -> Result<String, Refusal> {
         let _ = write!(
             text,
             "<ows:Identifier>{}</ows:Identifier><Style isDefault=\"true\"><ows:Identifier>default</ows:Identifier></Style><Format>image/png</Format>",
-            xml(name)
+            escaped(name)
         );
         for set in &sets {
             let name = set.frame.name();

@@ -8,7 +8,7 @@ use orogen_studio::catalogue::Language;
 use orogen_studio::editing::reader::Reader;
 use orogen_studio::window::app::App;
 
-use super::{click_at, drag_along, press, studio, until_done, window};
+use super::{click_at, double_click, drag_along, press, studio, until_done, window};
 
 const WIRE: &str = "wire noise to terrain.source";
 const POINT: &str = "point 1 of the wire noise to terrain.source";
@@ -28,20 +28,6 @@ fn points<'a>(harness: &'a Harness<'_, App>) -> &'a [[f64; 3]] {
 
 fn rect(harness: &Harness<'_, App>, label: &str) -> Rect {
     harness.get_by_label(label).rect()
-}
-
-/// Clicks twice, as fast as for a double click.
-fn double_click(harness: &mut Harness<'_, App>, at: Pos2) {
-    harness.event(Event::PointerMoved(at));
-    harness.run_steps(1);
-    // In a single step, because separate steps are further apart than the clicks of a double click.
-    for pressed in [true, false, true, false] {
-        let button = PointerButton::Primary;
-        let click = Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE };
-        harness.input_mut().events.push(click);
-    }
-    // So that the next click is none of them.
-    harness.run_steps(30);
 }
 
 fn right_click(harness: &mut Harness<'_, App>, at: Pos2) {
