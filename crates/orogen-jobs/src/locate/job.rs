@@ -73,7 +73,7 @@ const OPTIONS: &[OptionSpec] = &[
          `area > 2km2`",
     ),
     OptionSpec::new("find", "WHAT", ValueKind::Word(FIND))
-        .with_about("What is searched: ground, or objects of a vector layer")
+        .with_about("What is searched: `ground`, or the objects `summits`, `lakes`, `rivers`, `coast` or `scatter`")
         .with_default("ground"),
     OptionSpec::new("near", "E,N", ValueKind::Point).with_about(
         "Position that distances are measured from: easting and northing in the CRS of the heights; without a CRS, \
