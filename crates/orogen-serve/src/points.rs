@@ -25,7 +25,7 @@ const CHUNK: usize = 32;
 
 /// The position of the world: on its map, otherwise metres east and north of its origin.
 fn place(served: &Served) -> Georeference {
-    served.map().unwrap_or(Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None })
+    served.map().unwrap_or(Georeference::LOCAL)
 }
 
 /// `/height?x=&y=`.
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn lines_are_divided_into_equal_parts() {
-        let place = Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None };
+        let place = Georeference::LOCAL;
         let corners = corners("0,0; 30,-40;30,10").unwrap();
         let (points, distances) = along(&corners, &place, 5);
         assert_eq!(distances, [0.0, 25.0, 50.0, 75.0, 100.0]);

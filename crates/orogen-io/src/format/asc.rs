@@ -26,7 +26,7 @@ pub fn write(out: &mut dyn Write, grid: &Grid) -> io::Result<()> {
 /// Writes the header for the samples of a window: in local metres, or in the coordinates of `map`. All samples must
 /// follow with [`write_rows`].
 pub fn write_head(out: &mut dyn Write, window: &Window, map: Option<&Georeference>) -> io::Result<()> {
-    let local = Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None };
+    let local = Georeference::LOCAL;
     let map = map.unwrap_or(&local);
     let [west, south] = map.at(window.east(0), window.south(window.height.max(1) - 1));
     let (_, [across, down]) = map.of(window);

@@ -135,6 +135,9 @@ pub struct Georeference {
 }
 
 impl Georeference {
+    /// That of a world without a map: metres east and north of its north-west corner.
+    pub const LOCAL: Georeference = Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None };
+
     /// East and north, in map units, of a position in metres of the lattice.
     #[must_use]
     pub fn at(&self, x: f64, y: f64) -> [f64; 2] {

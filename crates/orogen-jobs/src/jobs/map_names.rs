@@ -30,7 +30,7 @@ pub fn add(
     window: &Window,
     warnings: &mut Vec<String>,
 ) {
-    let map = map.cloned().unwrap_or(Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None });
+    let map = map.cloned().unwrap_or(Georeference::LOCAL);
     let mut outside = Vec::new();
     let shares = |at: [f64; 2]| {
         let [east, south] = map.metres(at[0], at[1]);

@@ -178,7 +178,7 @@ impl LocateJob {
     pub fn run(&self, world: &World, progress: &Progress) -> Result<Located> {
         let recipe = world.recipe();
         let map = recipe.georeference();
-        let map = map.unwrap_or(Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None });
+        let map = map.unwrap_or(Georeference::LOCAL);
         let middle = recipe.world.size.map_or([0.0; 2], |size| size.map(|length| length / 2.0));
         let near = self.near.map_or(middle, |[east, north]| map.metres(east, north));
         let whole = recipe.world.size.map(|[width, height]| {

@@ -91,7 +91,7 @@ impl View {
     pub fn ends(&self, recipe: &Recipe, cell: f64) -> Result<Option<[f64; 4]>> {
         let bounds = self.bounds;
         let map = recipe.georeference();
-        let local = || Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None };
+        let local = || Georeference::LOCAL;
         let ends = match (self.window, bounds) {
             (Some(Rectangle::Samples(..)), _) => return Ok(None),
             (Some(Rectangle::Metres([x, y, width, height])), _) => [x, y, x + width, y + height],

@@ -74,7 +74,7 @@ impl Outlets {
                 found.points.into_iter().map(|point| (point.name, point.at)).collect()
             }
         };
-        let map = map.unwrap_or(Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None });
+        let map = map.unwrap_or(Georeference::LOCAL);
         let all = points.into_iter().map(|(name, given)| Outlet { name, given, at: map.metres(given[0], given[1]) });
         Ok(Some(Outlets { all: all.collect(), snap: given.number(SNAP.name), map }))
     }
