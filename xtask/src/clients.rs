@@ -32,11 +32,13 @@ Builds `orogen` in release mode, installs missing clients and runs every step of
 
   install   apt (as root on Debian); rustup's wasm32-unknown-unknown
   packages  pip into target/clients/venv, npm into target/clients/node; versions pinned; those of the second list only if chosen
-  build     cargo build --release of the command line and of the Python package
+  build     cargo build --release of the command line, of the Python package and of the library for C
   window    clippy and build of the studio's window and of graphics cards
   wasm      the libraries built for WebAssembly, without threads; four presets under node, and a world without files
   remote    builds, caches and elevation models in an object store, moto's: the bytes of local files
   serve     GDAL's drivers for WMTS and XYZ tiles, rasterio and NumPy read what `orogen serve` answers: the samples of exports
+  page      Chromium drives the map of `orogen serve` by mouse, keyboard and touch, in both languages: no error, no request to other hosts
+  c         a program in C and one in C++ use the library: the samples of an export
   presets   every preset against golden/presets.txt, at every SIMD level of this machine, on one thread or two
   numpy     NumPy reads .npy: the numbers of summary.json, and the orientation
   pillow    Pillow reads the pictures: grey values, the share of sea, animations
@@ -97,6 +99,8 @@ const RASTERIO: &str = "rasterio==1.4.4";
 const PILLOW: &str = "pillow==12.2.0";
 const BLOCKS: &[&str] = &[NUMPY, "nbtlib==2.0.4", "midvoxio==0.1.6", "matplotlib==3.11.2", "trimesh==5.2.0"];
 const MOTO: &str = "moto[server]==5.2.5";
+/// A font with Chinese letters, by a file that it has.
+const CHINESE: (&str, &str) = ("/usr/share/fonts/opentype/noto/NotoSansCJK-Regular.ttc", "fonts-noto-cjk");
 const LAYERS: &[&str] = &[NUMPY, RASTERIO, "whitebox-workflows==2.0.6"];
 
 const CLIENTS: &[Client] = &[
@@ -208,6 +212,13 @@ const CLIENTS: &[Client] = &[
     Client { name: "remote", apt: &[], pip: &[NUMPY, RASTERIO, MOTO], npm: &[] },
     Client { name: "serve", apt: &[], pip: &[NUMPY, RASTERIO], npm: &[] },
     Client {
+        name: "page",
+        apt: &[("chromium", "chromium"), ("node", "nodejs"), ("npm", "npm"), CHINESE],
+        pip: &[NUMPY, PILLOW, RASTERIO, "trimesh==5.2.0"],
+        npm: &["playwright-core@1.64.1"],
+    },
+    Client { name: "c", apt: &[("gcc", "gcc"), ("g++", "g++")], pip: &[NUMPY], npm: &[] },
+    Client {
         name: "azure",
         apt: &[("node", "nodejs"), ("npm", "npm")],
         pip: &[NUMPY, RASTERIO, "azure-storage-blob==12.31.1"],
@@ -256,7 +267,7 @@ const PACKAGES: Step = Step {
 };
 const BUILD: Step = Step {
     name: "build",
-    about: "cargo build --release -p orogen-cli -p orogen-py, with object stores and the server",
+    about: "cargo build --release -p orogen-cli -p orogen-py -p orogen-c, with object stores and the server",
     group: Some(1),
     run: || sh(&mut cargo(&format!("build --quiet --release {}", remote::BUILT))),
 };
@@ -271,6 +282,8 @@ const STEPS: &[&Step] = &[
     &beside("python", "the Python package in a new environment", python::check),
     &beside("remote", "builds, caches and heights in an object store, moto's", || script("remote")),
     &beside("serve", "GDAL, rasterio and NumPy read what is served", || script("serve")),
+    &beside("page", "Chromium drives the map that is served", || script("page")),
+    &beside("c", "a program in C reads the samples of an export", || script("c")),
     &beside("presets", "the presets' golden hashes at every level", presets::check),
     &beside("meshes", "the glTF validator, trimesh, meshio and admesh read meshes", || script("meshes")),
     &beside("water", "GDAL, SQLite and Shapely read rivers, lakes and watersheds", || script("water")),

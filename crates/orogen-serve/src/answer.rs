@@ -145,7 +145,7 @@ pub fn text(headers: &HeaderMap, kind: &'static str, text: &str, is_private: boo
 }
 
 /// Whether the client takes gzip: it names it, with a weight above 0.
-fn takes_gzip(headers: &HeaderMap) -> bool {
+pub fn takes_gzip(headers: &HeaderMap) -> bool {
     let all = headers.get_all(header::ACCEPT_ENCODING).iter().filter_map(|value| value.to_str().ok());
     all.flat_map(|value| value.split(',')).any(|coding| {
         let mut parts = coding.split(';').map(str::trim);

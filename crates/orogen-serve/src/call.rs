@@ -11,6 +11,7 @@ use axum::http::{HeaderMap, Uri, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{MethodRouter, get};
 use orogen::grid::words;
+use orogen::io::palette::named::{self, Named};
 
 use crate::answer::{self, Life};
 use crate::desk::{Keep, Work};
@@ -123,6 +124,23 @@ impl Call {
                 ))
             }),
         }
+    }
+
+    /// The palette of a layer, `?palette=`; `None` is the layer's own.
+    ///
+    /// # Errors
+    /// If there is no such palette.
+    pub fn palette(&self) -> Result<Option<&'static Named>, Refusal> {
+        let Some(name) = self.query.get("palette") else { return Ok(None) };
+        let found = named::find(name).map(Some);
+        found.ok_or_else(|| {
+            let names = || named::all().iter().map(|named| named.name);
+            let hint = match words::nearest(name, names()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("there are {}", words::list(names())),
+            };
+            Refusal::bad(format!("no palette is called `{name}`; {hint}"))
+        })
     }
 
     /// Whether answers are for this client only.

@@ -25,10 +25,12 @@
 mod answer;
 mod cache;
 mod call;
+mod colors;
 mod connection;
 mod describe;
 mod desk;
 mod metrics;
+mod page;
 mod places;
 mod points;
 mod query;

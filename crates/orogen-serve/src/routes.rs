@@ -14,10 +14,10 @@ use axum::routing::get;
 use crate::call::{Call, route};
 use crate::refusal::Refusal;
 use crate::shared::{Client, Shared};
-use crate::{answer, describe, places, points, tiles, windows};
+use crate::{answer, colors, describe, page, places, points, tiles, windows};
 
 /// First parts of paths that no world can have as its name.
-pub const RESERVED: [&str; 14] = [
+pub const RESERVED: [&str; 23] = [
     "tiles",
     "terrarium",
     "terrain-rgb",
@@ -32,6 +32,15 @@ pub const RESERVED: [&str; 14] = [
     "healthz",
     "metrics",
     "openapi",
+    "addresses",
+    "assets",
+    "book",
+    "colors",
+    "mesh",
+    "objects",
+    "studio",
+    "world",
+    "zarr",
 ];
 
 /// Path of the check that the server lives, which needs no token.
@@ -40,12 +49,12 @@ const HEALTH: &str = "/healthz";
 /// The router of all requests.
 pub fn router(shared: &Arc<Shared>) -> Router {
     let mut router = Router::new()
-        .route("/", route(describe::index::server))
+        .route("/", route(page::server))
         .route(HEALTH, get(async || "ok\n"))
         .route("/metrics", route(metrics))
         .route("/openapi.json", route(describe::openapi::openapi))
-        .route("/{world}", route(describe::index::world))
-        .route("/{world}/", route(describe::index::world));
+        .route("/{world}", route(page::folder))
+        .route("/{world}/", route(page::world));
     // A single world has short paths, too.
     for prefix in ["", "/{world}"] {
         router = router
@@ -55,12 +64,19 @@ pub fn router(shared: &Arc<Shared>) -> Router {
             .route(&format!("{prefix}/tilejson/{{layer}}"), route(describe::tilejson::tilejson))
             .route(&format!("{prefix}/wmts"), route(describe::wmts::capabilities))
             .route(&format!("{prefix}/wmts/1.0.0/WMTSCapabilities.xml"), route(describe::wmts::capabilities))
-            .route(&format!("{prefix}/window.tif"), route(windows::tif))
-            .route(&format!("{prefix}/window.png"), route(windows::png))
-            .route(&format!("{prefix}/window.npy"), route(windows::npy))
+            .route(&format!("{prefix}/colors/{{layer}}"), route(colors::colors))
+            .route(&format!("{prefix}/world.json"), route(describe::world::world))
+            .route(&format!("{prefix}/addresses"), route(describe::index::addresses))
             .route(&format!("{prefix}/height"), route(points::height))
             .route(&format!("{prefix}/profile"), route(points::profile))
             .route(&format!("{prefix}/locate"), route(places::locate));
+        for format in windows::formats() {
+            let path = format!("{prefix}/window.{}", format.name);
+            router = router.route(&path, route(move |call| windows::window(call, format)));
+        }
+    }
+    for asset in &page::ASSETS {
+        router = router.route(&format!("/assets/{}", asset.name), route(async |call| page::asset(&call, asset)));
     }
     router
         .fallback(async || Refusal::absent("there is no such request; / and /openapi.json list all of them"))
@@ -124,7 +140,9 @@ async fn around(State(shared): State<Arc<Shared>>, request: Request, next: Next)
         shared: &shared,
     };
     let is_asked = request.method() == Method::OPTIONS;
-    let is_allowed = is_asked || request.uri().path() == HEALTH || is_allowed(&shared, &request);
+    // Scripts of the page are no secret.
+    let is_open = |path: &str| path == HEALTH || path.starts_with("/assets/");
+    let is_allowed = is_asked || is_open(request.uri().path()) || is_allowed(&shared, &request);
     let mut response = match (is_asked, is_allowed) {
         (true, _) => asked(),
         (false, true) => next.run(request).await,

@@ -8,6 +8,7 @@ use orogen::export::derived::layer::Made;
 use orogen::export::derived::list;
 use orogen::grid::hex;
 use orogen::io::format::Georeference;
+use orogen::io::palette::named::Named;
 use orogen::jobs::map_tiles::MapTiles;
 use orogen::options::Options;
 use orogen::world::HEIGHT;
@@ -68,7 +69,8 @@ pub struct Served {
     world: Arc<World>,
     /// Worlds of the recipe with the nodes of a derived layer, by the layer.
     derived: Mutex<HashMap<String, Arc<World>>>,
-    maps: Mutex<HashMap<String, Arc<MapTiles>>>,
+    /// Layers with their colors, by the layer and the palette.
+    maps: Mutex<HashMap<[String; 2], Arc<MapTiles>>>,
     samplers: Mutex<HashMap<String, Arc<Sampler<Arc<World>>>>>,
     /// Changes with anything that an answer depends on.
     pub version: String,
@@ -77,6 +79,11 @@ pub struct Served {
 /// Data under these locks is consistent at any time, also after a panic of another thread.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The key of a map.
+fn key_of(layer: &str, palette: Option<&Named>) -> [String; 2] {
+    [layer.to_string(), palette.map_or(String::new(), |named| named.name.to_string())]
 }
 
 impl Served {
@@ -244,18 +251,19 @@ impl Served {
         Ok(Zooms { least, own, most })
     }
 
-    /// The map of a layer, if it is ready.
-    pub fn ready_map(&self, layer: &str) -> Option<Arc<MapTiles>> {
-        lock(&self.maps).get(layer).cloned()
+    /// The map of a layer in a palette, if it is ready.
+    pub fn ready_map(&self, layer: &str, palette: Option<&Named>) -> Option<Arc<MapTiles>> {
+        lock(&self.maps).get(&key_of(layer, palette)).cloned()
     }
 
-    /// Fits the colors of a layer.
+    /// Fits the colors of a layer, from a palette or its own.
     ///
     /// # Errors
     /// The errors of [`MapTiles::new`].
-    pub fn fit_map(&self, layer: &str, progress: &Progress) -> Result<()> {
-        let map = Arc::new(MapTiles::new(self.world_of(layer)?, layer, self.is_place, progress)?);
-        lock(&self.maps).insert(layer.to_string(), map);
+    pub fn fit_map(&self, layer: &str, palette: Option<&Named>, progress: &Progress) -> Result<()> {
+        let colors = palette.map(Named::palette);
+        let map = Arc::new(MapTiles::new(self.world_of(layer)?, layer, colors, self.is_place, progress)?);
+        lock(&self.maps).insert(key_of(layer, palette), map);
         Ok(())
     }
 

@@ -3,6 +3,7 @@
 mod bad_requests;
 mod client;
 mod descriptions;
+mod page;
 mod samples;
 mod work;
 

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use axum::body::Bytes;
 use axum::response::Response;
 use orogen::builder::tile_grid::MAX_ZOOM;
 use orogen::builder::xyz;
@@ -12,6 +11,7 @@ use orogen::io::format::encoding::Encoding;
 use orogen::world::HEIGHT;
 
 use crate::call::Call;
+use crate::colors;
 use crate::desk::{Keep, Work};
 use crate::refusal::Refusal;
 use crate::served::{Frame, Served, TILE};
@@ -78,20 +78,14 @@ impl Address {
 
 /// `/tiles/{layer}/{z}/{x}/{y}.png`.
 pub async fn map(call: Call) -> Result<Response, Refusal> {
-    call.query.only(&["grid"])?;
-    let (served, frame, address) = (call.served()?, call.frame()?, Address::read(&call)?);
+    call.query.only(&["grid", "palette"])?;
+    let (served, frame, address, palette) = (call.served()?, call.frame()?, Address::read(&call)?, call.palette()?);
     let layer = call.part("layer").to_string();
-    let key = address.key(&served, "map", &layer, frame)?;
+    let named = palette.map_or("own", |named| named.name);
+    let key = address.key(&served, &format!("map {named}"), &layer, frame)?;
     let grid = address.grid(&served, frame)?;
     let work = async || {
-        let map = match served.ready_map(&layer) {
-            Some(map) => map,
-            None => {
-                fitted(&call, &served, &layer).await?;
-                let missing = || Refusal::busy("the layer is being prepared; send the request again");
-                served.ready_map(&layer).ok_or_else(missing)?
-            }
-        };
+        let map = colors::fitted(&call, &served, &layer, palette).await?;
         let budget = served.session().budget().clone();
         Ok(Box::new(move |progress: &orogen::Progress| {
             let _scratch = budget.reserve(PIXEL * ((address.side + 2) * (address.side + 2)) as u64)?;
@@ -99,19 +93,6 @@ pub async fn map(call: Call) -> Result<Response, Refusal> {
         }) as Work)
     };
     call.worked(&served, (key, Keep::Tile), "image/png", work).await
-}
-
-/// Fits the colors of a layer, once. That may need the solution of a whole world, so the work goes on if the client
-/// does not wait for it.
-async fn fitted(call: &Call, served: &Arc<Served>, layer: &str) -> Result<(), Refusal> {
-    let work = || {
-        let (served, layer) = (Arc::clone(served), layer.to_string());
-        Box::new(move |progress: &orogen::Progress| {
-            served.fit_map(&layer, progress)?;
-            Ok(Bytes::new())
-        }) as Work
-    };
-    call.shared.desk.get(format!("colors {} {layer}", served.name), Keep::Work, work).await.map(drop)
 }
 
 /// `/terrarium/{z}/{x}/{y}.png`.
@@ -124,12 +105,38 @@ pub async fn terrain_rgb(call: Call) -> Result<Response, Refusal> {
     encoded(call, Encoding::TerrainRgb).await
 }
 
+/// What the heights of tiles are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Surface {
+    /// Those of the ground; the part outside the world repeats its edge.
+    Ground,
+    /// The sea is flat, and so is the part outside the world: what a map in 3D shows.
+    Water,
+}
+
+impl Surface {
+    const ALL: [(&str, Surface); 2] = [("ground", Surface::Ground), ("water", Surface::Water)];
+
+    /// Reads `?surface=`.
+    fn read(call: &Call) -> Result<(&'static str, Surface), Refusal> {
+        let Some(name) = call.query.get("surface") else { return Ok(Surface::ALL[0]) };
+        Surface::ALL.into_iter().find(|(own, _)| *own == name).ok_or_else(|| {
+            Refusal::bad(format!(
+                "`surface` must be ground (the heights) or water (a flat sea, also outside the world), not `{name}`"
+            ))
+        })
+    }
+}
+
 async fn encoded(call: Call, encoding: Encoding) -> Result<Response, Refusal> {
-    call.query.only(&["grid"])?;
+    call.query.only(&["grid", "surface"])?;
     let (served, frame, address) = (call.served()?, call.frame()?, Address::read(&call)?);
-    let key = address.key(&served, encoding.name(), HEIGHT, frame)?;
+    let (named, surface) = Surface::read(&call)?;
+    let key = address.key(&served, &format!("{} {named}", encoding.name()), HEIGHT, frame)?;
     let grid = address.grid(&served, frame)?;
     let (world, budget) = (Arc::clone(served.world()), served.session().budget().clone());
+    // A real place may be below the level of the sea without being in it.
+    let (has_sea, sea_level) = (!served.is_place, served.recipe().world.sea_level as f32);
     let work = async || {
         Ok(Box::new(move |progress: &orogen::Progress| {
             let Address { column, row, side, .. } = address;
@@ -137,7 +144,19 @@ async fn encoded(call: Call, encoding: Encoding) -> Result<Response, Refusal> {
             let window = grid.window(column, row, 0);
             let heights = world.grids(&[HEIGHT], &window, progress)?.pop();
             let heights = heights.ok_or_else(|| Refusal::absent("the world has no heights"))?;
-            let samples = grid.read(column, row, 0, &heights, LayerKind::Height);
+            let mut samples = grid.read(column, row, 0, &heights, LayerKind::Height);
+            if surface == Surface::Water {
+                let [columns, rows] = grid.covered(column, row);
+                for (k, sample) in samples.iter_mut().enumerate() {
+                    let is_inside = columns.contains(&(k % side)) && rows.contains(&(k / side));
+                    *sample = match (is_inside, has_sea) {
+                        (true, true) => sample.max(sea_level),
+                        (true, false) => *sample,
+                        (false, true) => sea_level,
+                        (false, false) => 0.0,
+                    };
+                }
+            }
             Ok(xyz::encode(encoding, side, &samples)?.into())
         }) as Work)
     };

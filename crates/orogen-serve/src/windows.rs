@@ -2,6 +2,7 @@
 
 use axum::body::Bytes;
 use axum::response::Response;
+use orogen::budget::{Budget, Reservation};
 use orogen::export::derived::list;
 use orogen::export::{ExportJob, Format, LayerSource, registry};
 use orogen::grid::hex;
@@ -10,7 +11,7 @@ use orogen::io::file;
 use orogen::options::Options;
 use orogen::view::{Bounds, Size, View};
 use orogen::world::HEIGHT;
-use orogen::{ErrorKind, Window};
+use orogen::{Error, ErrorKind, Window};
 
 use crate::answer;
 use crate::call::Call;
@@ -18,9 +19,27 @@ use crate::desk::{Keep, Work};
 use crate::refusal::Refusal;
 use crate::served::Served;
 
-/// The formats of windows, and their media types.
-pub const FORMATS: [(&str, &str); 3] =
-    [("tif", "image/tiff"), ("png", "image/png"), ("npy", "application/octet-stream")];
+/// The formats of windows: those of samples and of meshes. Formats of objects are files of layers that a window of
+/// samples is not.
+pub fn formats() -> impl Iterator<Item = &'static Format> {
+    registry::all().iter().copied().filter(|format| !format.features)
+}
+
+/// The media type of a format.
+pub fn media_type(format: &Format) -> &'static str {
+    match format.name {
+        "tif" => "image/tiff",
+        "png" => "image/png",
+        "exr" => "image/x-exr",
+        "pgm" => "image/x-portable-graymap",
+        "glb" => "model/gltf-binary",
+        "obj" => "model/obj",
+        "stl" => "model/stl",
+        "3mf" => "model/3mf",
+        "asc" => "text/plain; charset=utf-8",
+        _ => "application/octet-stream",
+    }
+}
 
 /// The option of formats for files beside the file: there are none here.
 const NO_SIDECAR: &str = "no-sidecar";
@@ -28,26 +47,9 @@ const NO_SIDECAR: &str = "no-sidecar";
 /// Parameters of every window.
 pub const PARAMETERS: [&str; 5] = ["bbox", "width", "height", "cell", "layer"];
 
-/// `/window.tif`.
-pub async fn tif(call: Call) -> Result<Response, Refusal> {
-    window(call, 0).await
-}
-
-/// `/window.png`.
-pub async fn png(call: Call) -> Result<Response, Refusal> {
-    window(call, 1).await
-}
-
-/// `/window.npy`.
-pub async fn npy(call: Call) -> Result<Response, Refusal> {
-    window(call, 2).await
-}
-
-async fn window(call: Call, format: usize) -> Result<Response, Refusal> {
-    let (name, kind) = FORMATS[format];
-    let Some(format) = registry::named(name) else {
-        return Err(Refusal::absent(format!("no format is called {name}")));
-    };
+/// `/window.tif` and the like.
+pub async fn window(call: Call, format: &'static Format) -> Result<Response, Refusal> {
+    let (name, kind) = (format.name, media_type(format));
     let served = call.served()?;
     let layer = call.query.get("layer").unwrap_or(HEIGHT).to_string();
     let (options, layer_options) = options(&call, format, &layer)?;
@@ -77,10 +79,10 @@ async fn window(call: Call, format: usize) -> Result<Response, Refusal> {
             let channels = LayerSource::new(&world, &export.layer, window, progress)?.channels();
             // The file, uncompressed; then the file until it is sent and no longer in the cache.
             let held = world.budget().reserve(((4 * channels + 2) * window.len()) as u64)?;
-            let mut bytes = Vec::new();
-            let written = export.to_stream(&world, &mut bytes, progress);
+            let mut file = Growing::new(world.budget(), held);
+            let written = export.to_stream(&world, &mut file, progress);
             written.map_err(|cause| file::explain("make", std::path::Path::new(&export.layer), &cause))?;
-            drop(held);
+            let bytes = file.into_bytes();
             let held = world.budget().reserve(bytes.len() as u64)?;
             Ok(Bytes::from_owner(Held { bytes, _held: held }))
         }) as Work)
@@ -97,10 +99,53 @@ async fn window(call: Call, format: usize) -> Result<Response, Refusal> {
     Ok(response)
 }
 
+/// A file in memory, which may become larger than expected: a mesh has more bytes than its samples.
+struct Growing<'a> {
+    bytes: Vec<u8>,
+    budget: &'a Budget,
+    /// Memory that counts for it.
+    held: Vec<Reservation>,
+    counted: u64,
+}
+
+/// Step in which more memory is counted, in bytes.
+const STEP: u64 = 4 << 20;
+
+impl<'a> Growing<'a> {
+    fn new(budget: &'a Budget, held: Reservation) -> Growing<'a> {
+        let counted = held.bytes();
+        Growing { bytes: Vec::new(), budget, held: vec![held], counted }
+    }
+
+    fn into_bytes(self) -> Vec<u8> {
+        self.bytes
+    }
+}
+
+impl std::io::Write for Growing<'_> {
+    fn write(&mut self, more: &[u8]) -> std::io::Result<usize> {
+        while (self.bytes.len() + more.len()) as u64 > self.counted {
+            // To wait for others here could be to wait for oneself.
+            if self.budget.unused().is_some_and(|unused| unused < STEP) {
+                let message = "the file does not fit into the memory that is left; use a larger cell or a smaller bbox";
+                return Err(Error::new(ErrorKind::Memory, message).into());
+            }
+            self.held.push(self.budget.charge(STEP));
+            self.counted += STEP;
+        }
+        self.bytes.extend_from_slice(more);
+        Ok(more.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
 /// Bytes of an answer, whose memory counts until they are sent.
 struct Held {
     bytes: Vec<u8>,
-    _held: orogen::budget::Reservation,
+    _held: Reservation,
 }
 
 impl AsRef<[u8]> for Held {

@@ -57,6 +57,12 @@ impl Tint {
         Tint { colors: Colors::Fitted(fitted), sea_level, sea: palette.has_sea() }
     }
 
+    /// The sea level, in metres.
+    #[must_use]
+    pub fn sea_level(&self) -> f32 {
+        self.sea_level
+    }
+
     /// Whether a height is in the sea; always false if the tint does not distinguish water from land.
     #[must_use]
     pub fn is_sea(&self, height: f32) -> bool {

@@ -23,6 +23,7 @@ use orogen_io::file;
 use orogen_io::format::levels::{NO_SAMPLES, extremes};
 use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::palette::tint::Tint;
+use orogen_io::palette::{Palette, Rgb};
 use orogen_output::map::shade::Shade;
 use orogen_output::map::tile::{TilePainter, TileSamples};
 use orogen_output::sheet::Layer;
@@ -44,21 +45,33 @@ pub struct MapTiles {
     is_own: bool,
     kind: LayerKind,
     painter: TilePainter,
+    /// The lowest and the highest height of the overview.
+    heights: [f32; 2],
+    /// Names and colors of classes.
+    classes: Vec<(&'static str, Rgb)>,
+    unit: &'static str,
     sea_level: f32,
     /// The shading of each cell, by its bits.
     shades: Mutex<HashMap<u64, Arc<Shade>>>,
 }
 
 impl MapTiles {
-    /// Fits the colors to a world of a [prepared](crate::export::derived::list::prepare) recipe. `is_place`: it is a
-    /// real place, a file of heights, which has no sea level.
+    /// Fits the colors to a world of a [prepared](crate::export::derived::list::prepare) recipe. Without a palette the
+    /// layer has its own. `is_place`: it is a real place, a file of heights, which has no sea level.
     ///
     /// # Errors
-    /// If the world has no such layer, the layer has several channels that are no color and no vector, no sample is
-    /// finite, or the work was cancelled.
-    pub fn new(world: Arc<World>, layer: &str, is_place: bool, progress: &Progress) -> Result<MapTiles> {
+    /// If the world has no such layer, the layer has several channels that are no color and no vector, the palette does
+    /// not suit the layer, no sample is finite, or the work was cancelled.
+    pub fn new(
+        world: Arc<World>,
+        layer: &str,
+        palette: Option<Palette>,
+        is_place: bool,
+        progress: &Progress,
+    ) -> Result<MapTiles> {
         let recipe = world.recipe();
-        let job = MapJob::new(SheetFormat::Png).with_layer(layer);
+        let mut job = MapJob::new(SheetFormat::Png).with_layer(layer);
+        job.palette = palette;
         let sea_level = if is_place { f32::NEG_INFINITY } else { recipe.world.sea_level as f32 };
         let (windows, palette) = ([overview(&world), middle(&world, recipe.world.cell)?], job.palette(recipe));
         let (nature, kind, unit, channels) = {
@@ -66,23 +79,27 @@ impl MapTiles {
             (source.nature(), source.kind(), source.unit(), source.channels())
         };
         let is_own = world.unit(layer).is_ok();
-        let tint = || {
-            let heights = first(world.grids(&[HEIGHT], &windows[0], progress)?, &windows[0]);
-            let palette = MapJob::new(SheetFormat::Png).palette(recipe);
-            match heights.data().iter().any(|height| height.is_finite()) {
-                true => Ok(Tint::of(&palette, &heights, sea_level)),
+        let mut heights = NO_SAMPLES;
+        let mut tint = |palette: &Palette| {
+            let seen = first(world.grids(&[HEIGHT], &windows[0], progress)?, &windows[0]);
+            heights = extremes(NO_SAMPLES, seen.data());
+            match heights[0] <= heights[1] {
+                true => Ok(Tint::of(palette, &seen, sea_level)),
                 false => Err(request("the layer `height` has no finite sample".into())),
             }
         };
+        let hypsometric = MapJob::new(SheetFormat::Png).palette(recipe);
+        let mut classes = Vec::new();
         let painter = if layer == HEIGHT {
-            TilePainter::of_heights(tint()?)
-        } else if let Some((_, classes)) = biome_cover::classes(recipe).filter(|_| job.shows_biomes(recipe)) {
-            let colors: Vec<_> = classes.into_iter().map(|(_, color)| color).collect();
-            TilePainter::of_classes(tint()?, &colors)
+            TilePainter::of_heights(tint(&palette)?)
+        } else if let Some((_, found)) = biome_cover::classes(recipe).filter(|_| job.shows_biomes(recipe)) {
+            classes = found;
+            let colors: Vec<_> = classes.iter().map(|(_, color)| *color).collect();
+            TilePainter::of_classes(tint(&hypsometric)?, &colors)
         } else if nature == Nature::Normal {
             TilePainter::of_vectors()
         } else if nature == Nature::Color {
-            TilePainter::of_albedo(tint()?)
+            TilePainter::of_albedo(tint(&hypsometric)?)
         } else if channels != 1 {
             let message =
                 format!("`{layer}` has {channels} channels, but a tile shows a layer with one; read it as an array");
@@ -105,7 +122,36 @@ impl MapTiles {
                 &palette,
             )?
         };
-        Ok(MapTiles { world, layer: layer.to_string(), is_own, kind, painter, sea_level, shades: Mutex::default() })
+        Ok(MapTiles {
+            world,
+            layer: layer.to_string(),
+            is_own,
+            kind,
+            painter,
+            heights,
+            classes,
+            unit,
+            sea_level,
+            shades: Mutex::default(),
+        })
+    }
+
+    /// Values and their colors in ascending order, for a legend; none if the color does not depend on one number.
+    #[must_use]
+    pub fn stops(&self) -> Vec<(f32, Rgb)> {
+        self.painter.stops(self.heights)
+    }
+
+    /// Names and colors of the classes, for a legend; none if the layer has other colors.
+    #[must_use]
+    pub fn classes(&self) -> &[(&'static str, Rgb)] {
+        &self.classes
+    }
+
+    /// The unit of the layer's values.
+    #[must_use]
+    pub fn unit(&self) -> &'static str {
+        self.unit
     }
 
     /// The tile at a column and a row of a grid, as an RGBA PNG; pixels outside the world are transparent.
@@ -224,7 +270,7 @@ mod tests {
     fn tiles(layer: &str) -> Result<MapTiles> {
         let mut recipe = Recipe::parse(RECIPE, "test")?;
         list::prepare(&mut recipe, layer, &Options::default())?;
-        MapTiles::new(Arc::new(World::open(recipe)?), layer, false, &Progress::none())
+        MapTiles::new(Arc::new(World::open(recipe)?), layer, None, false, &Progress::none())
     }
 
     fn pixels(tiles: &MapTiles, zoom: u32, column: u64) -> Vec<u8> {

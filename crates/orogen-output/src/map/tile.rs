@@ -13,6 +13,9 @@ use orogen_io::palette::Palette;
 use orogen_io::palette::color::{Encoder, Light, Rgb, decode};
 use orogen_io::palette::tint::Tint;
 
+/// Intervals between the stops of a legend.
+const STOPS: usize = 96;
+
 /// What colors the pixels.
 enum Colors {
     /// The heights.
@@ -82,6 +85,29 @@ impl TilePainter {
 
     fn new(colors: Colors) -> TilePainter {
         TilePainter { colors, encoder: Encoder::new() }
+    }
+
+    /// Values and their colors in ascending order, for legends: heights over this range, and those of another layer over
+    /// its own; none if the color does not depend on one number.
+    #[must_use]
+    pub fn stops(&self, [low, high]: [f32; 2]) -> Vec<(f32, Rgb)> {
+        let color = |light: Light| self.encoder.bytes(light);
+        match &self.colors {
+            Colors::Heights(tint) => {
+                let step = (high - low) / STOPS as f32;
+                let mut heights: Vec<f32> = (0..=STOPS).map(|k| low + k as f32 * step).collect();
+                let sea_level = tint.sea_level();
+                if sea_level >= low && sea_level < high {
+                    // The shore is a hard step.
+                    heights.extend([sea_level, sea_level.next_up()]);
+                    heights.sort_by(f32::total_cmp);
+                    heights.dedup();
+                }
+                heights.into_iter().map(|height| (height, color(tint.at(height)))).collect()
+            }
+            Colors::Layer(ramp) => ramp.values(STOPS).into_iter().map(|value| (value, color(ramp.at(value)))).collect(),
+            Colors::Classes(..) | Colors::Albedo(_) | Colors::Vectors => Vec::new(),
+        }
     }
 
     /// Paints a tile: four sRGB bytes a pixel, of which the last is the opacity. Without heights or a shade there is no
@@ -180,6 +206,30 @@ mod tests {
                 false => assert_eq!((&own[..3], own[3]), (map, 255), "{i} {j}"),
             }
         }
+    }
+
+    #[test]
+    fn stops_are_the_colors_of_tiles_and_have_the_shore_as_a_step() {
+        let grid = hill();
+        let painter = TilePainter::of_heights(Tint::fit(&grid, 100.0));
+        let stops = painter.stops([-200.0, 400.0]);
+        assert!(stops.is_sorted_by(|a, b| a.0 < b.0));
+        assert_eq!((stops[0].0, stops[stops.len() - 1].0), (-200.0, 400.0));
+        let shore = stops.iter().position(|stop| stop.0 == 100.0).unwrap();
+        assert_eq!(stops[shore + 1].0, 100.0f32.next_up());
+        assert_ne!(stops[shore].1, stops[shore + 1].1);
+        for (value, color) in stops {
+            let heights = [value; 9];
+            let tile = TileSamples { side: 1, cell: 1.0, heights: Some(&heights), values: &[], covered: [0..1, 0..1] };
+            assert_eq!(painter.paint(&tile, None)[..3], color);
+        }
+        let grid = Grid::from_data(Window::new(3, 1, 1.0), vec![1.0, 10.0, 1000.0]).unwrap();
+        let layer = Layer::new("flow", grid).with_scale(Scale::Log);
+        let painter = TilePainter::of_layer(&layer, &named::find("grey").unwrap().palette()).unwrap();
+        let stops = painter.stops([0.0, 1.0]);
+        let middle = stops[stops.len() / 2].0;
+        assert!((middle - 31.62).abs() < 0.01 && stops[0].0 == 1.0, "{middle}");
+        assert!(TilePainter::of_vectors().stops([0.0, 1.0]).is_empty());
     }
 
     #[test]

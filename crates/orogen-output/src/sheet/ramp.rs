@@ -96,6 +96,15 @@ impl Ramp {
         }
     }
 
+    /// Values at equal distances along the ramp, from its lower to its upper end.
+    pub fn values(&self, intervals: usize) -> Vec<f32> {
+        let is_log = self.scale == Scale::Log;
+        let [low, high] = self.ends.map(|end| if is_log { libm::log10(end) } else { end });
+        let at = |k: usize| low + (high - low) * k as f64 / intervals as f64;
+        let inner = (1..intervals).map(|k| if is_log { libm::pow(10.0, at(k)) } else { at(k) });
+        std::iter::once(self.ends[0]).chain(inner).chain([self.ends[1]]).map(|value| value as f32).collect()
+    }
+
     /// The values at pixel centers: means of numbers, or the nearest label.
     pub fn at_pixels(&self, values: &Grid, pixels: [usize; 2]) -> Grid {
         let mut out = at_pixels(values, pixels);

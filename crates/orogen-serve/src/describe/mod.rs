@@ -1,7 +1,8 @@
 //! Descriptions of a world, for people and for map programs.
 
-mod escape;
+pub mod escape;
 pub mod index;
 pub mod openapi;
 pub mod tilejson;
 pub mod wmts;
+pub mod world;

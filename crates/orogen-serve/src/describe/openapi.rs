@@ -2,7 +2,6 @@
 
 use axum::response::Response;
 use orogen::export::derived::list;
-use orogen::export::registry;
 use orogen::locate::LocateJob;
 use orogen::options::OptionSpec;
 use serde_json::{Map, Value, json};
@@ -12,7 +11,7 @@ use crate::call::Call;
 use crate::places::CELL;
 use crate::points::MAX_ALONG;
 use crate::refusal::Refusal;
-use crate::windows::FORMATS;
+use crate::windows;
 
 /// A parameter of a request: its name, its schema and what it means.
 type Parameter = (&'static str, Value, &'static str);
@@ -25,11 +24,11 @@ pub async fn openapi(call: Call) -> Result<Response, Refusal> {
     let prefixes: &[&str] = if single { &["", "/{world}"] } else { &["/{world}"] };
     for prefix in prefixes {
         for (path, about, kind, parameters) in requests() {
-            paths.insert(format!("{prefix}{path}"), operation(prefix, path, about, kind, parameters));
+            paths.insert(format!("{prefix}{path}"), operation(prefix, &path, about, kind, parameters));
         }
     }
     for (path, about, kind) in [
-        ("/", "Page that lists worlds, layers and addresses", "text/html"),
+        ("/", "Map of the only world, or list of all worlds", "text/html"),
         ("/healthz", "Whether the server lives; needs no token", "text/plain"),
         ("/metrics", "Counts for Prometheus", "text/plain"),
         ("/openapi.json", "This description", "application/json"),
@@ -65,7 +64,7 @@ pub async fn openapi(call: Call) -> Result<Response, Refusal> {
 }
 
 /// The requests of a world: path, description, media type and parameters.
-fn requests() -> Vec<(&'static str, &'static str, &'static str, Vec<Parameter>)> {
+fn requests() -> Vec<(String, &'static str, &'static str, Vec<Parameter>)> {
     let grid = || {
         let schema = json!({ "type": "string", "enum": ["web", "world"], "default": "web" });
         vec![("grid", schema, "Grid of tiles: that of web maps, or the square of the world")]
@@ -74,26 +73,38 @@ fn requests() -> Vec<(&'static str, &'static str, &'static str, Vec<Parameter>)>
         ("layer", json!({ "type": "string", "default": "height" }), "Layer of the recipe, or derived from its heights")
     };
     let number = || json!({ "type": "number" });
-    let mut all = vec![
+    let palette = || ("palette", json!({ "type": "string" }), "Name of a palette; the layer's own if it is left out");
+    let with = |mut parameters: Vec<Parameter>, more: Parameter| {
+        parameters.push(more);
+        parameters
+    };
+    let surface = || {
+        let schema = json!({ "type": "string", "enum": ["ground", "water"], "default": "ground" });
+        with(grid(), ("surface", schema, "Heights of the ground, or with a flat sea, also outside the world"))
+    };
+    let fixed = vec![
         (
             "/tiles/{layer}/{z}/{x}/{y}.png",
             "Tile of a layer in its colors, with relief shading; `{y}@2x.png` has 512 pixels",
             "image/png",
-            grid(),
+            with(grid(), palette()),
         ),
-        ("/terrarium/{z}/{x}/{y}.png", "Tile of heights: 256 R + G + B / 256 - 32768 metres", "image/png", grid()),
+        ("/terrarium/{z}/{x}/{y}.png", "Tile of heights: 256 R + G + B / 256 - 32768 metres", "image/png", surface()),
         (
             "/terrain-rgb/{z}/{x}/{y}.png",
             "Tile of heights: (65536 R + 256 G + B) / 10 - 10000 metres",
             "image/png",
-            grid(),
+            surface(),
         ),
         (
             "/tilejson/{layer}.json",
             "TileJSON of a layer, of `terrarium` or of `terrain-rgb`",
             "application/json",
-            grid(),
+            with(surface(), palette()),
         ),
+        ("/colors/{layer}.json", "Values and their colors, for a legend", "application/json", vec![palette()]),
+        ("/world.json", "Size, place, layers, palettes and formats of the world", "application/json", Vec::new()),
+        ("/addresses", "Page that lists layers and addresses", "text/html", Vec::new()),
         ("/wmts", "Capabilities of WMTS 1.0.0 with addresses of tiles", "application/xml", Vec::new()),
         (
             "/height",
@@ -116,10 +127,12 @@ fn requests() -> Vec<(&'static str, &'static str, &'static str, Vec<Parameter>)>
             ],
         ),
     ];
+    let mut all: Vec<_> =
+        fixed.into_iter().map(|(path, about, kind, parameters)| (path.to_string(), about, kind, parameters)).collect();
     let cell = (CELL, number(), "Distance between the samples that are searched, in metres");
     let search = LocateJob::OPTIONS.iter().map(of_option).chain([cell]).collect();
-    all.push(("/locate", "Nearest places that satisfy conditions", "application/json", search));
-    for ((format, kind), path) in FORMATS.into_iter().zip(["/window.tif", "/window.png", "/window.npy"]) {
+    all.push(("/locate".to_string(), "Nearest places that satisfy conditions", "application/json", search));
+    for format in windows::formats() {
         let size = || json!({ "type": "integer", "minimum": 1 });
         let mut parameters = vec![
             ("bbox", json!({ "type": "string" }), "West,south,east,north; the whole world if it is left out"),
@@ -132,15 +145,9 @@ fn requests() -> Vec<(&'static str, &'static str, &'static str, Vec<Parameter>)>
             ),
             layer(),
         ];
-        let own = registry::named(format).map_or(&[][..], |format| format.options);
-        parameters.extend(own.iter().filter(|spec| spec.name != "no-sidecar").map(of_option));
+        parameters.extend(format.options.iter().filter(|spec| spec.name != "no-sidecar").map(of_option));
         parameters.extend(list::options().into_iter().map(|(spec, _)| of_option(spec)));
-        let about = match format {
-            "tif" => "Window as a Cloud-Optimized GeoTIFF of f32",
-            "png" => "Window as a PNG of 16 bits",
-            _ => "Window as a NumPy array of f32",
-        };
-        all.push((path, about, kind, parameters));
+        all.push((format!("/window.{}", format.name), format.about, windows::media_type(format), parameters));
     }
     all
 }

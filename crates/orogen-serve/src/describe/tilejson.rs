@@ -22,7 +22,7 @@ pub fn tiles_of(layer: &str) -> (String, Option<Encoding>) {
 
 /// The answer.
 pub async fn tilejson(call: Call) -> Result<Response, Refusal> {
-    call.query.only(&["grid"])?;
+    call.query.only(&["grid", "palette", "surface"])?;
     let (served, frame) = (call.served()?, call.frame()?);
     let name = call.part("layer");
     let layer = name
@@ -33,7 +33,14 @@ pub async fn tilejson(call: Call) -> Result<Response, Refusal> {
     served.world_of(shown).map_err(|error| Refusal::of(&error).or_absent())?;
     let zooms = served.zooms(frame)?;
     let grid = (frame != Frame::Web).then(|| frame.name());
-    let template = format!("{}/{path}/{{z}}/{{x}}/{{y}}.png{}", call.base(&served), call.link(&served, grid));
+    let mut link = call.link(&served, grid);
+    call.palette()?;
+    for name in if encoding.is_some() { ["surface"] } else { ["palette"] } {
+        if let Some(value) = call.query.get(name) {
+            link += &format!("&{name}={}", encoded(value));
+        }
+    }
+    let template = format!("{}/{path}/{{z}}/{{x}}/{{y}}.png{link}", call.base(&served));
     let mut tiles = json!({
         "tilejson": "3.0.0",
         "name": format!("{}: {layer}", served.name),

@@ -67,7 +67,17 @@ pub fn world(text: &str) -> World {
 }
 
 pub fn start(worlds: &[(&str, &str)], given: &[(&'static str, &str)]) -> Running {
-    let mut server = Server::new(session(), &options(given)).unwrap();
+    started(session(), worlds, given)
+}
+
+/// A server with this much memory.
+pub fn start_within(worlds: &[(&str, &str)], given: &[(&'static str, &str)], memory: u64) -> Running {
+    let options = orogen::Options { threads: Some(2), memory: orogen::Budget::of(memory), ..orogen::Options::default() };
+    started(Session::new(options).unwrap(), worlds, given)
+}
+
+fn started(session: Session, worlds: &[(&str, &str)], given: &[(&'static str, &str)]) -> Running {
+    let mut server = Server::new(session, &options(given)).unwrap();
     for (name, text) in worlds {
         server.add(name, recipe(text), false).unwrap();
     }

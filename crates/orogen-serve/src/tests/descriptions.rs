@@ -139,7 +139,7 @@ fn caches_are_told_what_they_may_keep() {
 #[test]
 fn pages_list_worlds_and_layers() {
     let server = start(&[("hills", HILLS)], &[]);
-    for path in ["/", "/hills", "/hills/"] {
+    for path in ["/addresses", "/hills/addresses"] {
         let reply = server.get(path);
         assert_eq!((reply.status, reply.header("content-type")), (200, "text/html; charset=utf-8"));
         let text = reply.text();
@@ -158,7 +158,11 @@ fn pages_list_worlds_and_layers() {
     }
     let several = start(&[("hills", HILLS), ("plain", PLAIN)], &[]);
     let page = several.get("/");
-    assert!(page.text().contains("href=\"/hills/\"") && page.text().contains("href=\"/plain/\""));
+    assert!(page.text().contains("href=\"hills/\"") && page.text().contains("href=\"plain/\""));
+    for picture in page.text().split("img src=\"").skip(1) {
+        let picture = picture.split('"').next().unwrap().replace("&amp;", "&");
+        assert!(is_picture(&several.get(&format!("/{picture}"))), "{picture}");
+    }
     let refused = several.get("/tiles/height/0/0/0.png?grid=world");
     assert_eq!(refused.status, 404);
     assert!(refused.text().contains("begin the path with the name of one: `hills`"), "{}", refused.text());
