@@ -22,3 +22,5 @@ pub mod render;
 pub mod sheet;
 pub mod survey;
 pub mod tilemap;
+#[doc(hidden)]
+pub mod vector_tile;

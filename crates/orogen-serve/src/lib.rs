@@ -30,6 +30,7 @@ mod connection;
 mod describe;
 mod desk;
 mod metrics;
+mod objects;
 mod page;
 mod places;
 mod points;
@@ -40,6 +41,7 @@ mod served;
 mod server;
 mod shared;
 mod tiles;
+mod vector;
 mod windows;
 
 pub use server::Server;

@@ -14,7 +14,7 @@ use axum::routing::get;
 use crate::call::{Call, route};
 use crate::refusal::Refusal;
 use crate::shared::{Client, Shared};
-use crate::{answer, colors, describe, page, places, points, tiles, windows};
+use crate::{answer, colors, describe, objects, page, places, points, tiles, vector, windows};
 
 /// First parts of paths that no world can have as its name.
 pub const RESERVED: [&str; 23] = [
@@ -61,12 +61,14 @@ pub fn router(shared: &Arc<Shared>) -> Router {
             .route(&format!("{prefix}/tiles/{{layer}}/{{z}}/{{x}}/{{y}}"), route(tiles::map))
             .route(&format!("{prefix}/terrarium/{{z}}/{{x}}/{{y}}"), route(tiles::terrarium))
             .route(&format!("{prefix}/terrain-rgb/{{z}}/{{x}}/{{y}}"), route(tiles::terrain_rgb))
+            .route(&format!("{prefix}/vector/{{z}}/{{x}}/{{y}}"), route(vector::tile))
             .route(&format!("{prefix}/tilejson/{{layer}}"), route(describe::tilejson::tilejson))
             .route(&format!("{prefix}/wmts"), route(describe::wmts::capabilities))
             .route(&format!("{prefix}/wmts/1.0.0/WMTSCapabilities.xml"), route(describe::wmts::capabilities))
             .route(&format!("{prefix}/colors/{{layer}}"), route(colors::colors))
             .route(&format!("{prefix}/world.json"), route(describe::world::world))
             .route(&format!("{prefix}/addresses"), route(describe::index::addresses))
+            .route(&format!("{prefix}/objects.geojson"), route(objects::geojson))
             .route(&format!("{prefix}/height"), route(points::height))
             .route(&format!("{prefix}/profile"), route(points::profile))
             .route(&format!("{prefix}/locate"), route(places::locate));

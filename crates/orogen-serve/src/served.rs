@@ -10,6 +10,7 @@ use orogen::grid::hex;
 use orogen::io::format::Georeference;
 use orogen::io::palette::named::Named;
 use orogen::jobs::map_tiles::MapTiles;
+use orogen::jobs::vector_tiles::VectorTiles;
 use orogen::options::Options;
 use orogen::world::HEIGHT;
 use orogen::{Error, Progress, Recipe, Result, Sampler, Session, Window, World};
@@ -72,6 +73,7 @@ pub struct Served {
     /// Layers with their colors, by the layer and the palette.
     maps: Mutex<HashMap<[String; 2], Arc<MapTiles>>>,
     samplers: Mutex<HashMap<String, Arc<Sampler<Arc<World>>>>>,
+    vector: Arc<VectorTiles>,
     /// Changes with anything that an answer depends on.
     pub version: String,
 }
@@ -97,6 +99,7 @@ impl Served {
             name: name.to_string(),
             is_place,
             session: session.clone(),
+            vector: Arc::new(VectorTiles::new(Arc::clone(&world), is_place)),
             world,
             derived: Mutex::default(),
             maps: Mutex::default(),
@@ -107,6 +110,9 @@ impl Served {
         let mut hash = Sha256::new();
         for name in names {
             hash.update(served.fingerprint(&name)?);
+        }
+        if served.has_heights() {
+            hash.update(served.vector.key()?);
         }
         served.version = hex::encode(&hash.finalize())[..16].to_string();
         Ok(served)
@@ -265,6 +271,11 @@ impl Served {
         let map = Arc::new(MapTiles::new(self.world_of(layer)?, layer, colors, self.is_place, progress)?);
         lock(&self.maps).insert(key_of(layer, palette), map);
         Ok(())
+    }
+
+    /// The vector tiles.
+    pub fn vector(&self) -> &Arc<VectorTiles> {
+        &self.vector
     }
 
     /// A layer at points.

@@ -5,6 +5,8 @@ mod client;
 mod descriptions;
 mod page;
 mod samples;
+mod vector;
+mod vector_reader;
 mod work;
 
 /// A bounded world without a CRS.
@@ -41,4 +43,14 @@ height = "noise"
 /// The head of a world at a place.
 fn placed(crs: &str, origin: [f64; 2]) -> String {
     HILLS.replace("cell = 10", &format!("cell = 10\ncrs = \"{crs}\"\norigin = [{}, {}]", origin[0], origin[1]))
+}
+
+/// [`HILLS`] with rivers, lakes and trees.
+fn watered() -> String {
+    HILLS.replace(
+        "[outputs]\nheight = \"land\"",
+        "[nodes.terrain]\nop = \"lakes\"\nsource = \"land\"\nsmallest = 4000\n[nodes.rivers]\nop = \"drainage\"\n\
+         source = \"terrain.surface\"\nstream = 40000\n[outputs]\nheight = \"terrain\"\nlakes = \"terrain.lake\"\n\
+         flow = \"rivers.flow\"\n[[scatter]]\nname = \"tree\"\nspacing = 40",
+    )
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use axum::response::Response;
-use orogen::builder::tile_grid::MAX_ZOOM;
+use orogen::builder::tile_grid::{MAX_ZOOM, TileGrid};
 use orogen::builder::xyz;
 use orogen::grid::hex;
 use orogen::grid::resample::LayerKind;
@@ -21,30 +21,42 @@ const PIXEL: u64 = 48;
 
 /// The position of a tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Address {
-    zoom: u32,
-    column: u64,
-    row: u64,
+pub struct Address {
+    pub zoom: u32,
+    pub column: u64,
+    pub row: u64,
     /// Pixels on a side.
-    side: usize,
+    pub side: usize,
 }
 
 impl Address {
     /// Reads `{z}/{x}/{y}.png` or `{z}/{x}/{y}@2x.png`.
-    fn read(call: &Call) -> Result<Address, Refusal> {
+    fn of_picture(call: &Call) -> Result<Address, Refusal> {
+        match call.part("y").strip_suffix("@2x.png") {
+            Some(row) => Address::of(call, row, ".png", 2 * TILE),
+            None => Address::read(call, ".png", TILE),
+        }
+    }
+
+    /// Reads `{z}/{x}/{y}` with an extension; its tile has this many pixels on a side.
+    pub fn read(call: &Call, extension: &str, side: usize) -> Result<Address, Refusal> {
+        let row = call.part("y").strip_suffix(extension).unwrap_or_default();
+        Address::of(call, row, extension, side)
+    }
+
+    fn of(call: &Call, row: &str, extension: &str, side: usize) -> Result<Address, Refusal> {
         let [z, x, y] = ["z", "x", "y"].map(|name| call.part(name));
         let wrong = || {
+            let larger = if extension == ".png" { ", or row@2x.png for 512 pixels" } else { "" };
             Refusal::absent(format!(
-                "`{z}/{x}/{y}` is not a tile: it must be zoom/column/row.png with whole numbers, such as 12/2048/2050.png, or row@2x.png for 512 pixels"
+                "`{z}/{x}/{y}` is not a tile: it must be zoom/column/row{extension} with whole numbers, such as 12/2048/2050{extension}{larger}"
             ))
         };
-        let name = y.strip_suffix(".png").ok_or_else(wrong)?;
-        let (name, side) = name.strip_suffix("@2x").map_or((name, TILE), |name| (name, 2 * TILE));
         let number = |text: &str| {
             let is_plain = !text.is_empty() && text.len() < 12 && text.bytes().all(|byte| byte.is_ascii_digit());
             is_plain.then(|| text.parse::<u64>().ok()).flatten().ok_or_else(wrong)
         };
-        let (zoom, column, row) = (number(z)?, number(x)?, number(name)?);
+        let (zoom, column, row) = (number(z)?, number(x)?, number(row)?);
         if zoom > u64::from(MAX_ZOOM) {
             return Err(Refusal::absent(format!("the zoom must be 0 to {MAX_ZOOM}, not {zoom}")));
         }
@@ -59,7 +71,7 @@ impl Address {
     }
 
     /// The grid that has the tile.
-    fn grid(&self, served: &Served, frame: Frame) -> Result<orogen::builder::tile_grid::TileGrid, Refusal> {
+    pub fn grid(&self, served: &Served, frame: Frame) -> Result<TileGrid, Refusal> {
         let grid = served.grid(frame, self.zoom, self.side).map_err(|error| Refusal::of(&error).or_absent())?;
         match grid.has(self.column, self.row) {
             true => Ok(grid),
@@ -70,16 +82,20 @@ impl Address {
     /// Everything that the bytes of a tile depend on.
     fn key(&self, served: &Served, kind: &str, layer: &str, frame: Frame) -> Result<String, Refusal> {
         let fingerprint = served.fingerprint(layer).map_err(|error| Refusal::of(&error).or_absent())?;
+        Ok(self.key_of(&format!("{kind} {} {layer}", served.name), &fingerprint, frame))
+    }
+
+    /// The same for a tile that depends on the features with this hash.
+    pub fn key_of(&self, kind: &str, hash: &[u8], frame: Frame) -> String {
         let Address { zoom, column, row, side } = self;
-        let world = hex::encode(&fingerprint);
-        Ok(format!("{kind} {} {layer} {world} {} {zoom}/{column}/{row}/{side}", served.name, frame.name()))
+        format!("{kind} {} {} {zoom}/{column}/{row}/{side}", hex::encode(hash), frame.name())
     }
 }
 
 /// `/tiles/{layer}/{z}/{x}/{y}.png`.
 pub async fn map(call: Call) -> Result<Response, Refusal> {
     call.query.only(&["grid", "palette"])?;
-    let (served, frame, address, palette) = (call.served()?, call.frame()?, Address::read(&call)?, call.palette()?);
+    let (served, frame, address, palette) = (call.served()?, call.frame()?, Address::of_picture(&call)?, call.palette()?);
     let layer = call.part("layer").to_string();
     let named = palette.map_or("own", |named| named.name);
     let key = address.key(&served, &format!("map {named}"), &layer, frame)?;
@@ -130,7 +146,7 @@ impl Surface {
 
 async fn encoded(call: Call, encoding: Encoding) -> Result<Response, Refusal> {
     call.query.only(&["grid", "surface"])?;
-    let (served, frame, address) = (call.served()?, call.frame()?, Address::read(&call)?);
+    let (served, frame, address) = (call.served()?, call.frame()?, Address::of_picture(&call)?);
     let (named, surface) = Surface::read(&call)?;
     let key = address.key(&served, &format!("{} {named}", encoding.name()), HEIGHT, frame)?;
     let grid = address.grid(&served, frame)?;

@@ -55,15 +55,7 @@ pub async fn window(call: Call, format: &'static Format) -> Result<Response, Ref
     let (options, layer_options) = options(&call, format, &layer)?;
     served.world_of_options(&layer, &layer_options)?;
     let window = chosen(&call, &served)?;
-    let most = call.shared.limits.samples;
-    if window.len() > most {
-        return Err(Refusal::too_large(format!(
-            "{} x {} samples are {}, more than the {most} that one request may have; use a larger cell, a smaller width and height, or a smaller bbox, or raise --max-samples",
-            window.width,
-            window.height,
-            window.len()
-        )));
-    }
+    check_samples(&call, &window)?;
     let fingerprint = hex::encode(&served.fingerprint(&layer).unwrap_or_default());
     let key = format!("window.{name} {} {fingerprint} {window:?} {}", served.name, call.query.text());
     let (session, mut recipe) = (served.session().clone(), served.recipe().clone());
@@ -83,8 +75,7 @@ pub async fn window(call: Call, format: &'static Format) -> Result<Response, Ref
             let written = export.to_stream(&world, &mut file, progress);
             written.map_err(|cause| file::explain("make", std::path::Path::new(&export.layer), &cause))?;
             let bytes = file.into_bytes();
-            let held = world.budget().reserve(bytes.len() as u64)?;
-            Ok(Bytes::from_owner(Held { bytes, _held: held }))
+            Ok(Bytes::from_owner(Held::new(world.budget(), bytes)?))
         }) as Work)
     };
     let mut response = call.worked(&served, (key, Keep::Tile), kind, work).await?;
@@ -142,10 +133,38 @@ impl std::io::Write for Growing<'_> {
     }
 }
 
+/// Checks that a request may have the samples of a window.
+///
+/// # Errors
+/// If they are too many.
+pub fn check_samples(call: &Call, window: &Window) -> Result<(), Refusal> {
+    let most = call.shared.limits.samples;
+    if window.len() <= most {
+        return Ok(());
+    }
+    Err(Refusal::too_large(format!(
+        "{} x {} samples are {}, more than the {most} that one request may have; use a larger cell, a smaller width and height, or a smaller bbox, or raise --max-samples",
+        window.width,
+        window.height,
+        window.len()
+    )))
+}
+
 /// Bytes of an answer, whose memory counts until they are sent.
-struct Held {
+pub struct Held {
     bytes: Vec<u8>,
     _held: Reservation,
+}
+
+impl Held {
+    /// Counts the memory of these bytes.
+    ///
+    /// # Errors
+    /// If it does not suffice.
+    pub fn new(budget: &Budget, bytes: Vec<u8>) -> orogen::Result<Held> {
+        let held = budget.reserve(bytes.len() as u64)?;
+        Ok(Held { bytes, _held: held })
+    }
 }
 
 impl AsRef<[u8]> for Held {
@@ -174,7 +193,7 @@ fn options(call: &Call, format: &Format, layer: &str) -> Result<(Options, Option
 }
 
 /// The requested window: a part or the whole world, at a cell or with a number of samples.
-fn chosen(call: &Call, served: &Served) -> Result<Window, Refusal> {
+pub fn chosen(call: &Call, served: &Served) -> Result<Window, Refusal> {
     let query = &call.query;
     let world = served.world();
     let bounds =

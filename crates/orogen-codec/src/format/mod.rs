@@ -21,6 +21,7 @@ pub mod lerc;
 pub mod levels;
 pub mod luanti;
 pub mod metres16;
+pub mod mvt;
 pub mod nbt;
 pub mod npy;
 pub mod number;

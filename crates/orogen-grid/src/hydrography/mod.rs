@@ -15,6 +15,8 @@ pub mod network;
 #[doc(hidden)]
 pub mod outlines;
 #[doc(hidden)]
+pub mod peaks;
+#[doc(hidden)]
 pub mod pour_points;
 #[doc(hidden)]
 pub mod rings;

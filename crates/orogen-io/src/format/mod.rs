@@ -77,5 +77,5 @@ pub(crate) use orogen_codec::format::{
 };
 #[doc(hidden)]
 pub use orogen_codec::format::{
-    encoding, exr, gif, half, lerc, levels, luanti, npy, outlines, png, schem, vox, zip_writer,
+    encoding, exr, gif, half, lerc, levels, luanti, mvt, npy, outlines, png, schem, vox, zip_writer,
 };

@@ -107,6 +107,8 @@ pub struct TileGrid {
     cell: f64,
     /// The window and the samples around it that may be read; `None` if the world is unbounded.
     reach: Option<Window>,
+    /// Whether the samples are at the centers of pixels.
+    is_centered: bool,
 }
 
 impl TileGrid {
@@ -139,7 +141,15 @@ impl TileGrid {
             };
             return Err(Error::new(ErrorKind::Request, message));
         };
-        let mut grid = TileGrid { zoom, tile, axes, pixels: [across, down], cell: window.cell, reach: Some(window) };
+        let mut grid = TileGrid {
+            zoom,
+            tile,
+            axes,
+            pixels: [across, down],
+            cell: window.cell,
+            reach: Some(window),
+            is_centered: map.is_some(),
+        };
         if !grid.is_exact() {
             grid.reach = Some(world.surroundings(&window, 2 * AROUND));
         }
@@ -160,7 +170,8 @@ impl TileGrid {
         }
         let axes = web_axes(map, cell, zoom, tile).map(|axis| axis.rounded(0, 1));
         let last = ((tile as u64) << zoom) - 1;
-        Ok(TileGrid { zoom, tile, axes, pixels: [[0, last]; 2], cell, reach: None })
+        let is_centered = map.is_some();
+        Ok(TileGrid { zoom, tile, axes, pixels: [[0, last]; 2], cell, reach: None, is_centered })
     }
 
     /// The tiles of the world itself, at a zoom.
@@ -173,7 +184,7 @@ impl TileGrid {
         let most = (tile as u64) << zoom;
         let at = |cell: f64, first: f64, pixels, reach| {
             let axes = [Axis { first, step: 1.0 }; 2];
-            Ok(TileGrid { zoom, tile, axes, pixels, cell, reach })
+            Ok(TileGrid { zoom, tile, axes, pixels, cell, reach, is_centered: false })
         };
         match spec.size {
             Some([width, height]) => {
@@ -218,6 +229,35 @@ impl TileGrid {
     pub fn has(&self, column: u64, row: u64) -> bool {
         let [across, down] = self.tiles();
         (across[0]..=across[1]).contains(&column) && (down[0]..=down[1]).contains(&row)
+    }
+
+    /// The north-west corner of a tile in metres of the world, east and south, and pixels per metre.
+    #[must_use]
+    pub fn corner(&self, column: u64, row: u64) -> ([f64; 2], [f64; 2]) {
+        let shift = self.shift();
+        let first = |axis: usize, tile: u64| {
+            let Axis { first, step } = self.axes[axis];
+            (first + ((tile * self.tile as u64) as f64 - shift) * step) * self.cell
+        };
+        ([first(0, column), first(1, row)], self.axes.map(|axis| 1.0 / (axis.step * self.cell)))
+    }
+
+    /// Where in a pixel its sample is, in pixels: at the north-west corner or, for a world in Web Mercator, in the
+    /// middle.
+    #[must_use]
+    pub fn shift(&self) -> f64 {
+        if self.is_centered { 0.5 } else { 0.0 }
+    }
+
+    /// The columns and rows, from the north-west corner of a tile, of the pixels of the tile and of a margin around it
+    /// that have a sample of the window.
+    #[must_use]
+    pub fn within(&self, column: u64, row: u64, margin: usize) -> [std::ops::Range<i64>; 2] {
+        let (side, margin) = (self.tile as i64, margin as i64);
+        [(0, column), (1, row)].map(|(axis, tile)| {
+            let [first, last] = self.pixels[axis].map(|pixel| pixel as i64 - tile as i64 * side);
+            first.max(-margin)..(last + 1).min(side + margin)
+        })
     }
 
     /// Whether every pixel is a sample.

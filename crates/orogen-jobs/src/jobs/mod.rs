@@ -30,6 +30,8 @@ mod render_options;
 pub mod sheet_format;
 #[doc(hidden)]
 pub mod variants;
+#[doc(hidden)]
+pub mod vector_tiles;
 
 pub use analyze::AnalyzeJob;
 pub use blocks::{BlockFormat, BlocksJob};

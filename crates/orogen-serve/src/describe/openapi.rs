@@ -2,15 +2,18 @@
 
 use axum::response::Response;
 use orogen::export::derived::list;
+use orogen::jobs::vector_tiles::tile_layers;
 use orogen::locate::LocateJob;
 use orogen::options::OptionSpec;
 use serde_json::{Map, Value, json};
 
 use crate::answer;
 use crate::call::Call;
+use crate::objects;
 use crate::places::CELL;
 use crate::points::MAX_ALONG;
 use crate::refusal::Refusal;
+use crate::vector;
 use crate::windows;
 
 /// A parameter of a request: its name, its schema and what it means.
@@ -82,6 +85,16 @@ fn requests() -> Vec<(String, &'static str, &'static str, Vec<Parameter>)> {
         let schema = json!({ "type": "string", "enum": ["ground", "water"], "default": "ground" });
         with(grid(), ("surface", schema, "Heights of the ground, or with a flat sea, also outside the world"))
     };
+    let features = || {
+        let names: Vec<&str> = tile_layers::ALL.iter().map(|layer| layer.name).collect();
+        let about = "Layers, separated by commas; all that the world has if it is left out";
+        let text = json!({ "type": "string", "examples": [names.join(",")] });
+        let [least, most] = [vector::INTERVALS.start(), vector::INTERVALS.end()];
+        let interval = json!({ "type": "number", "minimum": least, "maximum": most });
+        let mut all = grid();
+        all.extend([(vector::LAYERS, text, about), (vector::INTERVAL, interval, "Contour interval in metres")]);
+        all
+    };
     let fixed = vec![
         (
             "/tiles/{layer}/{z}/{x}/{y}.png",
@@ -97,8 +110,14 @@ fn requests() -> Vec<(String, &'static str, &'static str, Vec<Parameter>)> {
             surface(),
         ),
         (
+            "/vector/{z}/{x}/{y}.mvt",
+            "Vector tile: contours, rivers, lakes, summits and objects",
+            vector::KIND,
+            features(),
+        ),
+        (
             "/tilejson/{layer}.json",
-            "TileJSON of a layer, of `terrarium` or of `terrain-rgb`",
+            "TileJSON of a layer, of `terrarium`, of `terrain-rgb` or of `vector`",
             "application/json",
             with(surface(), palette()),
         ),
@@ -132,6 +151,8 @@ fn requests() -> Vec<(String, &'static str, &'static str, Vec<Parameter>)> {
     let cell = (CELL, number(), "Distance between the samples that are searched, in metres");
     let search = LocateJob::OPTIONS.iter().map(of_option).chain([cell]).collect();
     all.push(("/locate".to_string(), "Nearest places that satisfy conditions", "application/json", search));
+    let about = "Objects, rivers, lakes, ... of a window";
+    all.push(("/objects.geojson".to_string(), about, objects::KIND, window_features()));
     for format in windows::formats() {
         let size = || json!({ "type": "integer", "minimum": 1 });
         let mut parameters = vec![
@@ -148,6 +169,24 @@ fn requests() -> Vec<(String, &'static str, &'static str, Vec<Parameter>)> {
         parameters.extend(format.options.iter().filter(|spec| spec.name != "no-sidecar").map(of_option));
         parameters.extend(list::options().into_iter().map(|(spec, _)| of_option(spec)));
         all.push((format!("/window.{}", format.name), format.about, windows::media_type(format), parameters));
+    }
+    all
+}
+
+/// The parameters of features of a window.
+fn window_features() -> Vec<Parameter> {
+    let names = objects::LAYERS.map(|(name, _)| name);
+    let text = || json!({ "type": "string" });
+    let cell = json!({ "type": "number", "exclusiveMinimum": 0 });
+    let mut all = vec![
+        ("bbox", text(), "West,south,east,north; the whole world if it is left out"),
+        ("cell", cell, "Metres between the samples that features are made from; the world's cell if it is left out"),
+        ("layer", json!({ "type": "string", "enum": names, "default": names[0] }), "Kind of the features"),
+    ];
+    for spec in objects::LAYERS.iter().flat_map(|(_, layer)| objects::options(layer)) {
+        if all.iter().all(|(name, ..)| *name != spec.name) {
+            all.push(of_option(spec));
+        }
     }
     all
 }

@@ -3,14 +3,26 @@
 use axum::response::Response;
 use orogen::builder::tile_grid;
 use orogen::io::format::encoding::Encoding;
+use orogen::jobs::vector_tiles::VectorTiles;
+use orogen::jobs::vector_tiles::tile_layers::TileLayerSpec;
 use orogen::world::HEIGHT;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use crate::answer;
 use crate::call::Call;
 use crate::query::encoded;
 use crate::refusal::Refusal;
 use crate::served::{Frame, Served, TILE};
+use crate::vector;
+
+/// The vector layers of TileJSON, with the attributes of their features.
+fn vector_layers(vector: &VectorTiles) -> Vec<Value> {
+    let layer = |layer: &'static TileLayerSpec| {
+        let fields = layer.fields.iter().map(|field| (field.field.name.to_string(), json!(field.field.about)));
+        json!({ "id": layer.name, "description": layer.about, "fields": fields.collect::<Map<_, _>>() })
+    };
+    vector.layers().into_iter().map(layer).collect()
+}
 
 /// The path of the tiles of a layer, and the encoding of its heights if they are encoded.
 pub fn tiles_of(layer: &str) -> (String, Option<Encoding>) {
@@ -28,8 +40,9 @@ pub async fn tilejson(call: Call) -> Result<Response, Refusal> {
     let layer = name
         .strip_suffix(".json")
         .ok_or_else(|| Refusal::absent(format!("`{name}` has no extension: TileJSON is at /tilejson/{name}.json")))?;
-    let (path, encoding) = tiles_of(layer);
-    let shown = if encoding.is_some() { HEIGHT } else { layer };
+    let is_vector = layer == vector::NAME;
+    let (path, encoding) = if is_vector { (vector::NAME.into(), None) } else { tiles_of(layer) };
+    let shown = if encoding.is_some() || is_vector { HEIGHT } else { layer };
     served.world_of(shown).map_err(|error| Refusal::of(&error).or_absent())?;
     let zooms = served.zooms(frame)?;
     let grid = (frame != Frame::Web).then(|| frame.name());
@@ -40,7 +53,10 @@ pub async fn tilejson(call: Call) -> Result<Response, Refusal> {
             link += &format!("&{name}={}", encoded(value));
         }
     }
-    let template = format!("{}/{path}/{{z}}/{{x}}/{{y}}.png{link}", call.base(&served));
+    let extension = if is_vector { "mvt" } else { "png" };
+    let template = format!("{}/{path}/{{z}}/{{x}}/{{y}}.{extension}{link}", call.base(&served));
+    // Vector tiles have as many samples as four tiles of the next zoom.
+    let most = if is_vector { zooms.most.saturating_sub(1).max(zooms.least) } else { zooms.most };
     let mut tiles = json!({
         "tilejson": "3.0.0",
         "name": format!("{}: {layer}", served.name),
@@ -49,11 +65,15 @@ pub async fn tilejson(call: Call) -> Result<Response, Refusal> {
         "tiles": [template],
         "scheme": "xyz",
         "minzoom": zooms.least,
-        "maxzoom": zooms.most,
+        "maxzoom": most,
         "tileSize": TILE,
         "grid": grid_of(&served, frame)?,
         "made_by": format!("Orogen {}", env!("CARGO_PKG_VERSION")),
     });
+    if is_vector {
+        tiles["tileSize"] = json!(VectorTiles::SIDE);
+        tiles["vector_layers"] = json!(vector_layers(served.vector()));
+    }
     if let Some(encoding) = encoding {
         tiles["encoding"] = json!(encoding.tilejson());
     }

@@ -27,6 +27,15 @@ fn what_is_wrong_is_a_sentence() {
         ("/tiles/height/0/0/0.png?grid=world&grid=web", 400, "given twice"),
         ("/tiles/height/0/0/0.png?grid=%f", 400, "percent-encoded"),
         ("/%ff/", 400, "percent-encoded"),
+        ("/vector/0/0/0.png?grid=world", 404, "such as 12/2048/2050.mvt"),
+        ("/vector/0/0/0@2x.mvt?grid=world", 404, "is not a tile"),
+        ("/vector/14/0/0.mvt", 404, "outside the world"),
+        ("/vector/0/0/0.mvt?grid=world&layers=contour", 404, "did you mean `contours`?"),
+        ("/vector/0/0/0.mvt?grid=world&layers=contours,rivers", 404, "nothing drains its land"),
+        ("/vector/0/0/0.mvt?grid=world&layers=objects", 404, "no table `[[scatter]]`"),
+        ("/vector/0/0/0.mvt?grid=world&interval=0", 400, "`interval` must be 0.001 to 100000 m, not 0"),
+        ("/vector/0/0/0.mvt?grid=world&interval=0.001", 400, "use a larger interval"),
+        ("/vector/0/0/0.mvt?grid=world&intervall=5", 400, "did you mean `interval`?"),
         ("/tilejson/height", 404, "/tilejson/height.json"),
         ("/tilejson/nothing.json", 404, "no layer `nothing`"),
         ("/wmts?REQUEST=GetTile", 400, "no request `GetTile`"),
@@ -48,6 +57,13 @@ fn what_is_wrong_is_a_sentence() {
         ("/window.png?no-sidecar=1", 400, "no parameter `no-sidecar`"),
         ("/window.png?azimuth=7&cell=100", 400, "no parameter `azimuth`"),
         ("/window.jpg", 404, "no world or request is called `window.jpg`"),
+        ("/objects.geojson", 400, "no objects"),
+        ("/objects.geojson?layer=river", 404, "did you mean `rivers`?"),
+        ("/objects.geojson?layer=rivers&interval=5", 400, "no parameter `interval`"),
+        ("/objects.geojson?layer=contours&interval=5&levels=7", 400, "exclude each other"),
+        ("/objects.geojson?layer=contours&outlets=%2Fetc%2Fpasswd", 400, "no parameter `outlets`"),
+        ("/objects.geojson?layer=contours&cell=1", 413, "more than the 100000"),
+        ("/objects.geojson?layer=contours&bbox=0,0,9,9", 400, "the whole world is 0,-2560,5120,0"),
         ("/height", 400, "give `x` and `y`"),
         ("/height?x=1", 400, "give `x` and `y`"),
         ("/height?x=a&y=1", 400, "`x` must be a number"),
@@ -117,12 +133,15 @@ impl Random {
 
 #[test]
 fn random_requests_have_an_answer_and_the_server_lives_on() {
-    const WORDS: [&str; 45] = [
+    const WORDS: [&str; 49] = [
         "hills",
         "plain",
         "tiles",
         "terrarium",
         "terrain-rgb",
+        "vector",
+        "0.mvt",
+        "8192.mvt",
         "tilejson",
         "wmts",
         "window.tif",
@@ -131,6 +150,7 @@ fn random_requests_have_an_answer_and_the_server_lives_on() {
         "height",
         "profile",
         "locate",
+        "objects.geojson",
         "height.json",
         "slope",
         "0",
@@ -164,7 +184,7 @@ fn random_requests_have_an_answer_and_the_server_lives_on() {
         ".png",
         "{z}",
     ];
-    const QUERIES: [&str; 20] = [
+    const QUERIES: [&str; 23] = [
         "grid=web",
         "grid=world",
         "grid=",
@@ -183,6 +203,9 @@ fn random_requests_have_an_answer_and_the_server_lives_on() {
         "x=inf",
         "points=0,0;9,-9",
         "samples=2",
+        "layers=contours",
+        "layer=rivers",
+        "interval=1e-3",
         "v=1",
         "&&=&",
     ];

@@ -13,7 +13,7 @@ use orogen::{Progress, Window};
 use serde_json::{Value, json};
 
 use super::client::{start, world};
-use super::{HILLS, PLAIN, placed};
+use super::{HILLS, PLAIN, placed, watered};
 
 #[test]
 fn tiles_are_the_files_of_a_build() {
@@ -170,4 +170,38 @@ fn maps_are_opaque_within_the_world_and_show_every_layer() {
         let shades: std::collections::BTreeSet<&[u8]> = inside.chunks(4).collect();
         assert!(shades.len() > 50, "{layer}: {} colors", shades.len());
     }
+}
+
+#[test]
+fn features_are_those_of_an_export() {
+    let text = watered();
+    let (world, server) = (world(&text), start(&[("hills", &text)], &[]));
+    for (name, layer, more) in [
+        ("objects", "scatter", ""),
+        ("rivers", "rivers", ""),
+        ("lakes", "lakes", ""),
+        ("summits", "summits", "prominence=30"),
+        ("contours", "contours", "interval=25"),
+    ] {
+        let options = more.split_once('=');
+        let geojson = registry::named("geojson").unwrap();
+        let window = Window::new(200, 100, 10.0).at(100, 50);
+        let job = ExportJob::new(geojson)
+            .with_layer(layer)
+            .with_window(window)
+            .with_options(Options::of(geojson.options, options).unwrap());
+        let mut bytes = Vec::new();
+        job.to_stream(&world, &mut bytes, &Progress::none()).unwrap();
+        let path = format!("/objects.geojson?layer={name}&bbox=1000,-1490,2990,-500&{more}");
+        let reply = server.get(&path);
+        assert_eq!((reply.status, reply.header("content-type")), (200, "application/geo+json"), "{reply:?}");
+        assert!(reply.body == bytes && reply.json()["features"][0].is_object(), "{name}");
+        let tag = format!("If-None-Match: {}", reply.header("etag"));
+        assert_eq!(server.ask("GET", &path, &[&tag]).status, 304);
+    }
+    // Objects are the default.
+    assert_eq!(
+        server.get("/objects.geojson?bbox=1000,-1490,2990,-500").body,
+        server.get("/objects.geojson?layer=objects&bbox=1000,-1490,2990,-500").body
+    );
 }
