@@ -61,6 +61,12 @@ pub fn halved(samples: &[f32], side: usize) -> Vec<f32> {
     (0..half).flat_map(|j| (0..half).map(move |i| (i, j))).map(mean).collect()
 }
 
+/// Samples rounded to multiples of a step.
+#[must_use]
+pub fn rounded_to(samples: &[f32], step: f64) -> Vec<f32> {
+    samples.iter().map(|sample| ((f64::from(*sample) / step).round() * step) as f32).collect()
+}
+
 /// Values above this are not heights, because some programs write the largest float as nodata.
 const HIGHEST: f32 = 1e30;
 

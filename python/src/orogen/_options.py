@@ -397,9 +397,10 @@ class BuildOptions(TypedDict, total=False):
     """Build only part K of N: N processes, also on other machines, make one result together, and the last one
     finishes it"""
     tile: int | None
-    """Samples along each side of a tile [default: 512; 513 for tiles that share their edges; 256 for an XYZ tree]"""
+    """Samples along each side of a tile [default: 512; 513 for tiles that share their edges; 256 for tiles of web
+    maps]"""
     tiles: str | None
-    """Kind of the tiles in a folder"""
+    """Kind of the tiles in a folder or a .pmtiles file"""
 
 
 class FitOptions(TypedDict, total=False):

@@ -570,7 +570,8 @@ class World:
         progress: Progress = None,
         **options: Unpack[BuildOptions],
     ) -> PathT:
-        """Builds a window of any size: a Cloud-Optimized GeoTIFF (.tif), a Zarr v3 group (.zarr) or a folder of tiles.
+        """Builds a window of any size: a Cloud-Optimized GeoTIFF (.tif), a Zarr v3 group (.zarr), tiles of web maps
+        (.pmtiles) or a folder of tiles.
 
         A build that was interrupted goes on where it stopped; with `overwrite=True` it begins anew (`orogen build`).
 

@@ -22,7 +22,8 @@ use crate::{disk, finite, interrupt, say};
 pub struct Args {
     /// A recipe file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     recipe: PathBuf,
-    /// Output: NAME.tif is a Cloud-Optimized GeoTIFF, NAME.zarr a Zarr v3 group, NAME a folder of --tiles
+    /// Output: NAME.tif is a Cloud-Optimized GeoTIFF, NAME.zarr a Zarr v3 group, NAME.pmtiles tiles of
+    /// web maps, NAME a folder of --tiles
     #[arg(short, long, value_name = "OUT")]
     out: PathBuf,
     #[command(flatten)]

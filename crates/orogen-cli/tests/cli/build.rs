@@ -8,13 +8,14 @@ use std::process::{Child, Stdio};
 use std::time::Instant;
 
 /// The builds: a name and the options.
-const BUILDS: [(&str, &[&str]); 6] = [
+const BUILDS: [(&str, &[&str]); 7] = [
     ("a.tif", &["small.toml", "--tile", "64", "--cell", "0.7"]),
     ("a.zarr", &["small.toml", "--tile", "100", "--layers", "height,noise", "--cell", "0.9"]),
     ("png", &["small.toml", "--tiles", "png", "--tile", "65", "--cell", "0.9"]),
     ("r16", &["hills", "--tiles", "r16", "--tile", "129", "--cell", "20"]),
     ("r32", &["archipelago", "--tiles", "r32", "--tile", "129", "--cell", "40"]),
     ("map", &["hills", "--tiles", "terrarium"]),
+    ("a.pmtiles", &["hills", "--tiles", "terrain-rgb", "--cell", "40"]),
 ];
 
 /// The arguments that build `name`.
@@ -74,11 +75,18 @@ fn what_is_built_and_what_is_said() {
 fn what_cannot_be_built_is_usage() {
     let folder = Folder::with_small();
     for (options, code, expect) in [
-        (&["-o", "a"][..], 2, "a does not determine what to build: use the extension .tif or .zarr, or --tiles"),
+        (
+            &["-o", "a"][..],
+            2,
+            "a does not determine what to build: use the extension .tif, .zarr or .pmtiles, or --tiles",
+        ),
         (&["-o", "a.tif", "--tiles", "png"], 2, "--tiles writes a folder, but a.tif has the extension of a file"),
         (&["-o", "a", "--tiles", "bmp"], 2, "invalid value"),
         (&["-o", "a.tif", "--layers", "height,noise"], 2, "a GeoTIFF holds one layer, and 2 were chosen"),
         (&["-o", "a.zarr", "--layers", "hieght"], 2, "did you mean `height`?"),
+        (&["-o", "a.pmtiles", "--tiles", "r16"], 2, "a .pmtiles file holds terrarium or terrain-rgb tiles"),
+        (&["-o", "a.pmtiles", "--size", "100"], 2, "tiles of web maps have fixed cell sizes"),
+        (&["-o", "a.pmtiles", "--layers", "height,noise"], 2, "a .pmtiles file holds one layer"),
         (&["-o", "a.zarr", "--window", "60,0,10,10"], 2, "not inside the world"),
         (&["-o", "a.zarr", "--tile", "0"], 2, "invalid value"),
         (&["-o", "a.tif", "--tile", "100"], 2, "a multiple of 16"),

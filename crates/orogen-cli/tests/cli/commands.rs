@@ -48,6 +48,7 @@ pub const WRITERS: &[Writer] = &[
         &["w.png", "w_2.png", "w_preview.png", "w.json"],
     ),
     writer(&["build", "small.toml", "--force", "-o", "b.tif"], &["b.tif"]),
+    writer(&["build", "small.toml", "--force", "-o", "b.pmtiles"], &["b.pmtiles"]),
     writer(&["analyze", "small.toml", "--cell", "5", "-o", "page.png"], &["page.png"]),
     writer(&["fit", "place.tif", "--tries", "12", "--judges", "1", "-o", "like.toml"], &["like.toml"]),
     writer(&["refine", "place.tif", "--cell", "15", "-o", "fine.tif"], &["fine.tif"]),

@@ -105,7 +105,7 @@ fn rows(side: usize) -> Vec<Vec<String>> {
         let size = fits.map_or(String::new(), |samples| format!("--size {samples}"));
         rows.push(format!("export land.toml --target {} -o engine.{} {size} -q", target.name, target.formats[0]));
     }
-    rows.extend(["tif", "zarr"].map(|kind| format!("build land.toml -o built.{kind} --force -q")));
+    rows.extend(["tif", "zarr", "pmtiles"].map(|kind| format!("build land.toml -o built.{kind} --force -q")));
     let tiles = ["png", "r16", "r32", "terrarium", "terrain-rgb"];
     rows.extend(tiles.map(|tiles| format!("build land.toml -o built-{tiles} --tiles {tiles} --force -q")));
     rows.iter().map(|row| row.split_whitespace().map(String::from).collect()).collect()

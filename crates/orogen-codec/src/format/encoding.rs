@@ -40,6 +40,12 @@ impl Encoding {
         }
     }
 
+    /// The distance between heights that can be encoded, in metres.
+    #[must_use]
+    pub fn step(self) -> f64 {
+        1.0 / self.scale().1
+    }
+
     /// The red, green and blue of a height, to the nearest step. Heights outside the range of the encoding are clamped;
     /// NaN becomes 0, 0, 0.
     #[must_use]

@@ -27,6 +27,7 @@ pub mod npy;
 pub mod number;
 pub mod outlines;
 pub mod packed_tree;
+pub mod pmtiles;
 pub mod png;
 pub mod schem;
 pub mod sorted_features;

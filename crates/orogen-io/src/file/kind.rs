@@ -59,6 +59,7 @@ const KINDS: &[Kind] = &[
         extensions: &["gpkg", "sqlite", "mbtiles"],
         begins: |head| head.starts_with(b"SQLite format 3\0"),
     },
+    Kind { name: "a PMTiles archive", extensions: &["pmtiles"], begins: |head| head.starts_with(b"PMTiles") },
     Kind { name: "a FlatGeobuf file", extensions: &["fgb"], begins: |head| head.starts_with(b"fgb") },
     Kind {
         name: "a 3MF model",

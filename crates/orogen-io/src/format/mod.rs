@@ -40,6 +40,8 @@ pub mod notes;
 #[doc(hidden)]
 pub mod pgm;
 #[doc(hidden)]
+pub mod pmtiles;
+#[doc(hidden)]
 pub mod points;
 pub mod raw;
 #[doc(hidden)]

@@ -31,6 +31,7 @@ mod output_store;
 mod part;
 mod part_folder;
 mod part_run;
+mod pmtiles;
 #[doc(hidden)]
 pub mod run;
 mod samples;

@@ -15,6 +15,7 @@ use super::journal::{Journal, JournalState};
 use super::output_store::{OutputStore, Put, WAITING, put};
 use super::part::Part;
 use super::part_folder::{self, PartFolder};
+use super::pmtiles::Pmtiles;
 use super::samples::range;
 use super::spec::{BuildSpec, Form};
 use super::target::{BuildTarget, Disk, paths};
@@ -495,6 +496,7 @@ fn target(world: &World, identity: &Identity, form: Form) -> Result<Box<dyn Buil
         Form::Zarr => Box::new(Zarr::new(identity, about)?),
         Form::Tiles(samples) => Box::new(Folder::new(identity, samples, about, sea_level)?),
         Form::Xyz(encoding) => Box::new(Tree::new(world, identity, encoding)?),
+        Form::Pmtiles(encoding) => Box::new(Pmtiles::new(world, identity, encoding)?),
     })
 }
 

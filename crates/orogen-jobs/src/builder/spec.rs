@@ -19,6 +19,8 @@ pub enum Form {
     Tiles(Samples),
     /// An XYZ tree of PNG tiles with encoded heights, with TileJSON.
     Xyz(Encoding),
+    /// The tiles of such a tree in one PMTiles file, with heights rounded by the zoom.
+    Pmtiles(Encoding),
 }
 
 /// The sample format of a folder's tiles.
@@ -43,11 +45,13 @@ impl Form {
             Form::Tiles(Samples::R16) => "r16",
             Form::Tiles(Samples::R32) => "r32",
             Form::Xyz(encoding) => encoding.name(),
+            Form::Pmtiles(Encoding::TerrainRgb) => "pmtiles-terrain-rgb",
+            Form::Pmtiles(_) => "pmtiles-terrarium",
         }
     }
 
     /// All forms.
-    pub const ALL: [Form; 7] = [
+    pub const ALL: [Form; 9] = [
         Form::Cog,
         Form::Zarr,
         Form::Tiles(Samples::Png),
@@ -55,6 +59,8 @@ impl Form {
         Form::Tiles(Samples::R32),
         Form::Xyz(Encoding::Terrarium),
         Form::Xyz(Encoding::TerrainRgb),
+        Form::Pmtiles(Encoding::Terrarium),
+        Form::Pmtiles(Encoding::TerrainRgb),
     ];
 
     /// The form with this name.
@@ -63,13 +69,14 @@ impl Form {
         Form::ALL.into_iter().find(|form| form.name() == name)
     }
 
-    /// The form for a file name's extension: `.tif`, `.tiff` or `.zarr`.
+    /// The form for a file name's extension: `.tif`, `.tiff`, `.zarr` or `.pmtiles`.
     #[must_use]
     pub fn of(out: &Path) -> Option<Form> {
         let extension = out.extension()?.to_string_lossy().to_lowercase();
         match extension.as_str() {
             "tif" | "tiff" => Some(Form::Cog),
             "zarr" => Some(Form::Zarr),
+            "pmtiles" => Some(Form::Pmtiles(Encoding::Terrarium)),
             _ => None,
         }
     }
@@ -82,12 +89,16 @@ impl Form {
         let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
         match (Form::of(out), options.word("tiles").and_then(Form::named)) {
             (Some(form), None) | (None, Some(form)) => Ok(form),
+            (Some(Form::Pmtiles(_)), Some(Form::Xyz(encoding))) => Ok(Form::Pmtiles(encoding)),
+            (Some(Form::Pmtiles(_)), Some(_)) => {
+                refuse("a .pmtiles file holds terrarium or terrain-rgb tiles; choose one of them with --tiles".into())
+            }
             (Some(_), Some(_)) => refuse(format!(
                 "--tiles writes a folder, but {} has the extension of a file; leave out one of them",
                 out.display()
             )),
             (None, None) => refuse(format!(
-                "{} does not determine what to build: use the extension .tif or .zarr, or --tiles png, r16, r32, \
+                "{} does not determine what to build: use the extension .tif, .zarr or .pmtiles, or --tiles png, r16, r32, \
                  terrarium or terrain-rgb",
                 out.display()
             )),
@@ -102,14 +113,20 @@ impl Form {
             Form::Cog => None,
             Form::Zarr => Some(512),
             Form::Tiles(_) => Some(513),
-            Form::Xyz(_) => Some(256),
+            Form::Xyz(_) | Form::Pmtiles(_) => Some(256),
         }
     }
 
     /// Whether the result is a single file instead of a folder.
     #[must_use]
     pub fn is_file(self) -> bool {
-        self == Form::Cog
+        matches!(self, Form::Cog | Form::Pmtiles(_))
+    }
+
+    /// Whether the result has the tiles of web maps.
+    #[must_use]
+    pub fn is_map(self) -> bool {
+        matches!(self, Form::Xyz(_) | Form::Pmtiles(_))
     }
 
     /// Whether the result can hold several layers.
@@ -145,22 +162,25 @@ const TILES: &[Choice] = &[
     Choice::new("r32", "Headerless f32, little-endian; adjacent tiles share their edge samples"),
     Choice::new(
         "terrarium",
-        "XYZ tree of Terrarium PNG tiles with TileJSON, for web maps; in EPSG:3857 those of OpenStreetMap",
+        "XYZ tree of Terrarium PNG tiles with TileJSON, for web maps, or a .pmtiles file of them (its default); in \
+         EPSG:3857 those of OpenStreetMap",
     ),
     Choice::new(
         "terrain-rgb",
-        "XYZ tree of Terrain-RGB PNG tiles with TileJSON, for web maps; in EPSG:3857 those of OpenStreetMap",
+        "XYZ tree of Terrain-RGB PNG tiles with TileJSON, for web maps, or a .pmtiles file of them; in EPSG:3857 those of \
+         OpenStreetMap",
     ),
 ];
 
 const OPTIONS: &[OptionSpec] = &[
-    OptionSpec::new("tiles", "TILES", ValueKind::Choice(TILES)).with_about("Kind of the tiles in a folder"),
+    OptionSpec::new("tiles", "TILES", ValueKind::Choice(TILES))
+        .with_about("Kind of the tiles in a folder or a .pmtiles file"),
     OptionSpec::new("layers", "A,B", ValueKind::Text)
         .with_about("Layers to build, separated by commas")
         .with_default(HEIGHT),
     OptionSpec::new("tile", "N", ValueKind::Whole(1, 65_536)).with_about(
-        "Samples along each side of a tile [default: 512; 513 for tiles that share their edges; 256 for an XYZ \
-             tree]",
+        "Samples along each side of a tile [default: 512; 513 for tiles that share their edges; 256 for tiles \
+             of web maps]",
     ),
     OptionSpec::new("part", "K/N", ValueKind::Part(MAX_PARTS)).with_about(
         "Build only part K of N: N processes, also on other machines, make one result together, and the last one \
@@ -227,6 +247,7 @@ impl BuildSpec {
                 "{} holds one layer, and {} were chosen; choose one, or build a .zarr or a folder of tiles",
                 match self.form {
                     Form::Cog => "a GeoTIFF",
+                    Form::Pmtiles(_) => "a .pmtiles file",
                     _ => "an XYZ tree",
                 },
                 self.layers.len()

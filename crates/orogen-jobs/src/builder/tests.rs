@@ -52,7 +52,7 @@ rough = "noise"
 
 mod parts;
 
-const FORMS: [Form; 7] = Form::ALL;
+const FORMS: [Form; 9] = Form::ALL;
 
 fn world(memory: Option<u64>, threads: usize) -> World {
     let recipe = Recipe::parse(BOUNDED, "test").unwrap();
@@ -64,12 +64,12 @@ fn world(memory: Option<u64>, threads: usize) -> World {
 fn spec(form: Form) -> BuildSpec {
     let tile = match form {
         Form::Cog => 32,
-        Form::Xyz(_) => 256,
+        Form::Xyz(_) | Form::Pmtiles(_) => 256,
         _ => 40,
     };
     let window = match form {
         // A cell size for which the window covers several tiles of the map.
-        Form::Xyz(_) => Window::new(300, 257, 3.0).at(3, 10),
+        Form::Xyz(_) | Form::Pmtiles(_) => Window::new(300, 257, 3.0).at(3, 10),
         _ => Window::new(101, 77, 5.0).at(7, 11),
     };
     let layers = if form.holds_many() { vec!["height".into(), "rough".into()] } else { vec!["height".into()] };

@@ -88,9 +88,51 @@ impl Tree {
     }
 
     /// The address of a job's tile on the whole map: zoom, column, row.
-    fn address(&self, job: Job) -> (u32, u64, u64) {
+    pub(super) fn address(&self, job: Job) -> (u32, u64, u64) {
         let [[left, _], [top, _]] = self.span(job.stage);
         (self.grid.zoom() - job.stage as u32, left + job.column as u64, top + job.row as u64)
+    }
+
+    /// The zoom of a stage.
+    pub(super) fn zoom(&self, stage: usize) -> u32 {
+        self.grid.zoom() - stage as u32
+    }
+
+    /// Distance between the pixels of the highest zoom, in metres of the world.
+    pub(super) fn cell(&self) -> f64 {
+        self.grid.cell()
+    }
+
+    /// West, south, east and north of the window, in degrees.
+    pub(super) fn degrees(&self) -> [f64; 4] {
+        tile_grid::degrees(self.grid.pixels(), (self.tile() as u64) << self.grid.zoom())
+    }
+
+    /// What the tiles are: members of TileJSON, and where they are from.
+    pub(super) fn about(&self) -> serde_json::Value {
+        let zoom = self.grid.zoom();
+        let [west, south, east, north] = self.degrees();
+        let lowest = zoom + 1 - self.stages.len() as u32;
+        json!({
+            "name": if self.about.is_empty() { "Orogen" } else { &self.about },
+            "minzoom": lowest,
+            "maxzoom": zoom,
+            "bounds": [west, south, east, north],
+            "center": [(west + east) / 2.0, (south + north) / 2.0, lowest],
+            "encoding": self.encoding.tilejson(),
+            "tileSize": self.tile(),
+            "made_by": format!("Orogen {}", self.identity.version),
+            "recipe_sha256": self.identity.recipe,
+            "cell": self.identity.window.cell,
+            "map_metres_per_metre": match tile_grid::web_map(self.identity.map.as_ref()) {
+                Some(map) => map.per_metre[0],
+                None => tile_grid::pixel(zoom, self.tile()) / self.identity.window.cell,
+            },
+            "window": {
+                "x": self.identity.window.x, "y": self.identity.window.y,
+                "width": self.identity.window.width, "height": self.identity.window.height,
+            },
+        })
     }
 
     fn picture(&self, job: Job) -> JobFile {
@@ -139,6 +181,30 @@ impl Tree {
     }
 }
 
+impl Tree {
+    /// Runs a job; `shown` are the heights of the tile that are written, from the exact ones.
+    pub(super) fn made(
+        &self,
+        job: Job,
+        grids: &[Grid],
+        store: &OutputStore,
+        shown: impl FnOnce(&[f32]) -> Vec<f32>,
+    ) -> Result<Made> {
+        let samples = match grids.first() {
+            Some(grid) => {
+                let (_, column, row) = self.address(job);
+                self.grid.read(column, row, 0, grid, self.kind)
+            }
+            None => self.gathered(job, store)?,
+        };
+        let mut files = vec![encode(self.encoding, self.tile(), &shown(&samples))?];
+        if job.stage + 1 < self.stages.len() {
+            files.push(to_bytes(&halved(&samples, self.tile())));
+        }
+        Ok(Made { files, ranges: Vec::new() })
+    }
+}
+
 impl BuildTarget for Tree {
     fn stages(&self) -> Vec<Stage> {
         self.stages.clone()
@@ -167,47 +233,14 @@ impl BuildTarget for Tree {
     }
 
     fn make(&self, job: Job, grids: &[Grid], store: &OutputStore) -> Result<Made> {
-        let samples = match grids.first() {
-            Some(grid) => {
-                let (_, column, row) = self.address(job);
-                self.grid.read(column, row, 0, grid, self.kind)
-            }
-            None => self.gathered(job, store)?,
-        };
-        let mut files = vec![encode(self.encoding, self.tile(), &samples)?];
-        if job.stage + 1 < self.stages.len() {
-            files.push(to_bytes(&halved(&samples, self.tile())));
-        }
-        Ok(Made { files, ranges: Vec::new() })
+        self.made(job, grids, store, <[f32]>::to_vec)
     }
 
     fn finish(&self, store: &OutputStore) -> Result<Vec<(PathBuf, FileDigest)>> {
-        let zoom = self.grid.zoom();
-        let [west, south, east, north] = tile_grid::degrees(self.grid.pixels(), (self.tile() as u64) << zoom);
-        let lowest = zoom + 1 - self.stages.len() as u32;
-        let tiles = json!({
-            "tilejson": "3.0.0",
-            "name": if self.about.is_empty() { "Orogen" } else { &self.about },
-            "tiles": ["{z}/{x}/{y}.png"],
-            "scheme": "xyz",
-            "minzoom": lowest,
-            "maxzoom": zoom,
-            "bounds": [west, south, east, north],
-            "center": [(west + east) / 2.0, (south + north) / 2.0, lowest],
-            "encoding": self.encoding.tilejson(),
-            "tileSize": self.tile(),
-            "made_by": format!("Orogen {}", self.identity.version),
-            "recipe_sha256": self.identity.recipe,
-            "cell": self.identity.window.cell,
-            "map_metres_per_metre": match tile_grid::web_map(self.identity.map.as_ref()) {
-                Some(map) => map.per_metre[0],
-                None => tile_grid::pixel(zoom, self.tile()) / self.identity.window.cell,
-            },
-            "window": {
-                "x": self.identity.window.x, "y": self.identity.window.y,
-                "width": self.identity.window.width, "height": self.identity.window.height,
-            },
-        });
+        let mut tiles = self.about();
+        tiles["tilejson"] = json!("3.0.0");
+        tiles["tiles"] = json!(["{z}/{x}/{y}.png"]);
+        tiles["scheme"] = json!("xyz");
         Ok(vec![store.json(TILEJSON, &tiles)?])
     }
 
@@ -216,8 +249,9 @@ impl BuildTarget for Tree {
     }
 
     fn scratch_memory(&self) -> u64 {
-        // The pixels, their encoding in three bytes each, the compressed tile, and half the pixels.
-        16 * (self.tile() * self.tile()) as u64
+        // The pixels and those that are written, their encoding in three bytes each, the compressed tile, and half the
+        // pixels.
+        20 * (self.tile() * self.tile()) as u64
     }
 
     fn disk(&self) -> Disk {

@@ -144,7 +144,7 @@ fn builds_have_the_bytes_of_local_ones_in_every_form_and_any_number_of_parts() {
     for form in Form::ALL {
         let spec = BuildSpec::new(form, window).with_tile(match form {
             Form::Tiles(_) => 65,
-            Form::Xyz(_) => 256,
+            Form::Xyz(_) | Form::Pmtiles(_) => 256,
             _ => 64,
         });
         let name = form.name();
