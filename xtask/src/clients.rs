@@ -39,6 +39,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step of
   serve     GDAL's drivers for WMTS and XYZ tiles, rasterio and NumPy read what `orogen serve` answers: the samples of exports
   page      Chromium drives the map of `orogen serve` by mouse, keyboard and touch, in both languages: no error, no request to other hosts
   c         a program in C and one in C++ use the library: the samples of an export
+  vector    GDAL reads vector tiles: contours at the heights of an export, its lakes and rivers; pmtiles a PMTiles file
   presets   every preset against golden/presets.txt, at every SIMD level of this machine, on one thread or two
   numpy     NumPy reads .npy: the numbers of summary.json, and the orientation
   pillow    Pillow reads the pictures: grey values, the share of sea, animations
@@ -219,6 +220,12 @@ const CLIENTS: &[Client] = &[
     },
     Client { name: "c", apt: &[("gcc", "gcc"), ("g++", "g++")], pip: &[NUMPY], npm: &[] },
     Client {
+        name: "vector",
+        apt: &[],
+        pip: &[NUMPY, PILLOW, "shapely==2.2.0", "pyogrio==0.13.0", "pmtiles==3.8.1"],
+        npm: &[],
+    },
+    Client {
         name: "azure",
         apt: &[("node", "nodejs"), ("npm", "npm")],
         pip: &[NUMPY, RASTERIO, "azure-storage-blob==12.31.1"],
@@ -284,6 +291,7 @@ const STEPS: &[&Step] = &[
     &beside("serve", "GDAL, rasterio and NumPy read what is served", || script("serve")),
     &beside("page", "Chromium drives the map that is served", || script("page")),
     &beside("c", "a program in C reads the samples of an export", || script("c")),
+    &beside("vector", "GDAL reads vector tiles, and pmtiles a PMTiles file", || script("vector")),
     &beside("presets", "the presets' golden hashes at every level", presets::check),
     &beside("meshes", "the glTF validator, trimesh, meshio and admesh read meshes", || script("meshes")),
     &beside("water", "GDAL, SQLite and Shapely read rivers, lakes and watersheds", || script("water")),
