@@ -1,4 +1,4 @@
-"""Checks `orogen serve`: GDAL's drivers for WMTS and XYZ tiles, rasterio and NumPy read what is exported."""
+"""Checks `orogen serve`: GDAL's drivers for WMTS and XYZ tiles, rasterio, NumPy, xarray and zarrita read what is exported."""
 
 import io
 import signal
@@ -8,6 +8,7 @@ import urllib.request
 
 import numpy
 import rasterio
+import serve_zarr
 from orogen import BINARY, WORK, Checks, export
 from rasterio.windows import Window
 
@@ -20,7 +21,7 @@ with rasterio.open(place) as file:
     heights, bounds, crs = file.read(1), file.bounds, file.crs
 
 server = subprocess.Popen(
-    [BINARY, "serve", "place.tif", "hills", "--port", "0", "--quiet"], cwd=WORK, stdout=subprocess.PIPE, text=True
+    [BINARY, "serve", "place.tif", "hills", "endless", "--port", "0", "--quiet"], cwd=WORK, stdout=subprocess.PIPE, text=True
 )
 base = server.stdout.readline().split(" at ")[1].strip()
 
@@ -76,6 +77,8 @@ with rasterio.open(xyz) as file:
 decoded = bands[0] * 256 + bands[1] + bands[2] / 256 - 32768
 difference = numpy.abs(decoded - numpy.load(built)).max()
 checks.that("XYZ: the samples of an export", difference <= 0.5 / 256, difference)
+
+serve_zarr.check(checks, base)
 
 # Errors are sentences.
 try:

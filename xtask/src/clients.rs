@@ -36,7 +36,8 @@ Builds `orogen` in release mode, installs missing clients and runs every step of
   window    clippy and build of the studio's window and of graphics cards
   wasm      the libraries built for WebAssembly, without threads; four presets under node, and a world without files
   remote    builds, caches and elevation models in an object store, moto's: the bytes of local files
-  serve     GDAL's drivers for WMTS and XYZ tiles, rasterio and NumPy read what `orogen serve` answers: the samples of exports
+  serve     GDAL's drivers for WMTS and XYZ tiles, rasterio, NumPy, xarray, zarr-python and zarrita read what `orogen serve` answers: the
+            samples of exports
   page      Chromium drives the map of `orogen serve` by mouse, keyboard and touch, in both languages: no error, no request to other hosts
   c         a program in C and one in C++ use the library: the samples of an export
   vector    GDAL reads vector tiles: contours at the heights of an export, its lakes and rivers; pmtiles a PMTiles file
@@ -97,6 +98,8 @@ struct Client {
 
 const NUMPY: &str = "numpy==2.4.6";
 const RASTERIO: &str = "rasterio==1.4.4";
+const XARRAY: &str = "xarray==2026.9.0";
+const ZARR: &str = "zarr==3.1.6";
 const PILLOW: &str = "pillow==12.2.0";
 const BLOCKS: &[&str] = &[NUMPY, "nbtlib==2.0.4", "midvoxio==0.1.6", "matplotlib==3.11.2", "trimesh==5.2.0"];
 const MOTO: &str = "moto[server]==5.2.5";
@@ -111,12 +114,12 @@ const CLIENTS: &[Client] = &[
     Client { name: "numpy", apt: &[], pip: &[NUMPY], npm: &[] },
     Client { name: "pillow", apt: &[], pip: &[NUMPY, PILLOW], npm: &[] },
     Client { name: "rasterio", apt: &[], pip: &[NUMPY, RASTERIO, "rio-cogeo==7.0.4"], npm: &[] },
-    Client { name: "xarray", apt: &[], pip: &[NUMPY, "xarray==2026.9.0", "zarr==3.1.6"], npm: &[] },
+    Client { name: "xarray", apt: &[], pip: &[NUMPY, XARRAY, ZARR], npm: &[] },
     Client { name: "tiles", apt: &[], pip: &[NUMPY, PILLOW], npm: &[] },
     Client {
         name: "dems",
         apt: &[],
-        pip: &[NUMPY, RASTERIO, "zarr==3.1.6", "numcodecs==0.16.6", "pyproj==3.7.2", "OpenEXR==3.5.3"],
+        pip: &[NUMPY, RASTERIO, ZARR, "numcodecs==0.16.6", "pyproj==3.7.2", "OpenEXR==3.5.3"],
         npm: &[],
     },
     Client {
@@ -211,7 +214,12 @@ const CLIENTS: &[Client] = &[
         npm: &["pyright@1.1.414"],
     },
     Client { name: "remote", apt: &[], pip: &[NUMPY, RASTERIO, MOTO], npm: &[] },
-    Client { name: "serve", apt: &[], pip: &[NUMPY, RASTERIO], npm: &[] },
+    Client {
+        name: "serve",
+        apt: &[("node", "nodejs"), ("npm", "npm")],
+        pip: &[NUMPY, RASTERIO, XARRAY, ZARR, "aiohttp==3.14.5", "fsspec==2026.9.0"],
+        npm: &["zarrita@0.7.5"],
+    },
     Client {
         name: "page",
         apt: &[("chromium", "chromium"), ("node", "nodejs"), ("npm", "npm"), CHINESE],
@@ -288,7 +296,7 @@ const STEPS: &[&Step] = &[
     &beside("wasm", "four presets made by the libraries built for WebAssembly", wasm::check_four),
     &beside("python", "the Python package in a new environment", python::check),
     &beside("remote", "builds, caches and heights in an object store, moto's", || script("remote")),
-    &beside("serve", "GDAL, rasterio and NumPy read what is served", || script("serve")),
+    &beside("serve", "GDAL, rasterio, NumPy, xarray and zarrita read what is served", || script("serve")),
     &beside("page", "Chromium drives the map that is served", || script("page")),
     &beside("c", "a program in C reads the samples of an export", || script("c")),
     &beside("vector", "GDAL reads vector tiles, and pmtiles a PMTiles file", || script("vector")),

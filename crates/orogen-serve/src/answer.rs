@@ -112,9 +112,10 @@ pub fn set(headers: &mut HeaderMap, name: HeaderName, value: &str) {
     }
 }
 
-/// A text, compressed if the client takes that; with the tag of its content.
+/// A text, compressed if the client takes that and asks for no part of it; with the tag of its content.
 pub fn text(headers: &HeaderMap, kind: &'static str, text: &str, is_private: bool) -> Result<Response, Refusal> {
-    let takes_gzip = takes_gzip(headers) && text.len() >= COMPRESSED;
+    let takes_part = headers.contains_key(header::RANGE);
+    let takes_gzip = !takes_part && takes_gzip(headers) && text.len() >= COMPRESSED;
     let tag = etag(&[kind.as_bytes(), text.as_bytes(), &[u8::from(takes_gzip)]]);
     if is_known(headers, &tag) {
         return Ok(not_modified(&tag, Life::Checked, is_private));
@@ -134,7 +135,10 @@ pub fn text(headers: &HeaderMap, kind: &'static str, text: &str, is_private: boo
             packed.into()
         }
     };
-    let mut response = bytes(kind, body);
+    let mut response = match takes_gzip {
+        false => part(headers, &tag, body, kind)?,
+        true => bytes(kind, body),
+    };
     lasting(&mut response, &tag, Life::Checked, is_private);
     let headers = response.headers_mut();
     headers.insert(header::VARY, HeaderValue::from_static("accept-encoding, host"));

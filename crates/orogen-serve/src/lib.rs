@@ -43,6 +43,7 @@ mod shared;
 mod tiles;
 mod vector;
 mod windows;
+mod zarr;
 
 pub use server::Server;
 

@@ -14,7 +14,7 @@ use axum::routing::get;
 use crate::call::{Call, route};
 use crate::refusal::Refusal;
 use crate::shared::{Client, Shared};
-use crate::{answer, colors, describe, objects, page, places, points, tiles, vector, windows};
+use crate::{answer, colors, describe, objects, page, places, points, tiles, vector, windows, zarr};
 
 /// First parts of paths that no world can have as its name.
 pub const RESERVED: [&str; 23] = [
@@ -28,6 +28,7 @@ pub const RESERVED: [&str; 23] = [
     "profile",
     "locate",
     "vector",
+    "zarr",
     "map",
     "healthz",
     "metrics",
@@ -71,7 +72,8 @@ pub fn router(shared: &Arc<Shared>) -> Router {
             .route(&format!("{prefix}/objects.geojson"), route(objects::geojson))
             .route(&format!("{prefix}/height"), route(points::height))
             .route(&format!("{prefix}/profile"), route(points::profile))
-            .route(&format!("{prefix}/locate"), route(places::locate));
+            .route(&format!("{prefix}/locate"), route(places::locate))
+            .route(&format!("{prefix}/zarr/{{*key}}"), route(zarr::zarr));
         for format in windows::formats() {
             let path = format!("{prefix}/window.{}", format.name);
             router = router.route(&path, route(move |call| windows::window(call, format)));

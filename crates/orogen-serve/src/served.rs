@@ -1,9 +1,10 @@
 //! A world that is served.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use orogen::builder::tile_grid::{self, MAX_ZOOM, TileGrid, UNBOUNDED_ZOOM};
+use orogen::builder::zarr_layout::ZarrLayout;
 use orogen::export::derived::layer::Made;
 use orogen::export::derived::list;
 use orogen::grid::hex;
@@ -74,6 +75,8 @@ pub struct Served {
     maps: Mutex<HashMap<[String; 2], Arc<MapTiles>>>,
     samplers: Mutex<HashMap<String, Arc<Sampler<Arc<World>>>>>,
     vector: Arc<VectorTiles>,
+    /// The levels of its Zarr store, once it was requested.
+    pub zarr: OnceLock<Vec<ZarrLayout>>,
     /// Changes with anything that an answer depends on.
     pub version: String,
 }
@@ -104,6 +107,7 @@ impl Served {
             derived: Mutex::default(),
             maps: Mutex::default(),
             samplers: Mutex::default(),
+            zarr: OnceLock::new(),
             version: String::new(),
         };
         let names: Vec<String> = served.recipe().outputs().map(str::to_string).collect();

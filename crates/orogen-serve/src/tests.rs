@@ -8,6 +8,7 @@ mod samples;
 mod vector;
 mod vector_reader;
 mod work;
+mod zarr;
 
 /// A bounded world without a CRS.
 const HILLS: &str = r#"

@@ -44,6 +44,8 @@ mod work_dir;
 #[doc(hidden)]
 pub mod xyz;
 mod zarr;
+#[doc(hidden)]
+pub mod zarr_layout;
 
 pub use run::{Build, Report};
 pub use spec::{BuildSpec, Form, Samples};

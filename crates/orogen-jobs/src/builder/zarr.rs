@@ -2,33 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use serde_json::{Value, json};
-
 use super::digest::FileDigest;
 use super::identity::Identity;
 use super::job::{Job, JobFile, Made, Stage};
 use super::output_store::OutputStore;
-use super::samples::square;
 use super::target::{BuildTarget, Disk};
-use orogen_engine::tiles::Tiling;
-use orogen_grid::error::{Error, ErrorKind, Result};
+use super::zarr_layout::ZarrLayout;
+use orogen_grid::error::{Error, Result};
 use orogen_grid::grid::{Grid, Window};
-use orogen_io::format::dem::Georeference;
-use orogen_io::format::zarr::blosc;
-use orogen_io::format::zarr::metadata::{self, Array, Number};
-use orogen_io::samples::to_bytes;
-
-/// Maximum number of coordinates per chunk.
-const COORDINATES: usize = 1 << 16;
-
-/// Maximum side of a chunk; with larger chunks readers run out of memory.
-const LARGEST: usize = 8192;
 
 /// The group.
 pub struct Zarr {
-    identity: Identity,
-    about: String,
-    tiling: Tiling,
+    layout: ZarrLayout,
 }
 
 impl Zarr {
@@ -37,77 +22,27 @@ impl Zarr {
     /// # Errors
     /// If a chunk cannot have this side.
     pub fn new(identity: &Identity, about: &str) -> Result<Zarr> {
-        if !(1..=LARGEST).contains(&identity.tile) {
-            let message =
-                format!("the tiles of a .zarr must have 1 to {LARGEST} samples per side, not {}", identity.tile);
-            return Err(Error::new(ErrorKind::Request, message));
-        }
-        let tiling = Tiling::of(identity.tile);
-        Ok(Zarr { identity: identity.clone(), about: about.to_string(), tiling })
+        let layout = ZarrLayout {
+            about: about.to_string(),
+            recipe: identity.recipe.clone(),
+            layers: identity.layers.iter().cloned().zip(identity.units.iter().cloned()).collect(),
+            window: identity.window,
+            tile: identity.tile,
+            map: identity.map.clone(),
+        };
+        layout.check()?;
+        Ok(Zarr { layout })
     }
 
     fn stage(&self) -> Stage {
-        let [columns, rows] = self.tiling.layout(&self.identity.window);
-        Stage { rows, columns, samples: self.identity.tile * self.identity.tile * self.identity.layers.len() }
-    }
-
-    fn array(&self, layer: &str, unit: &str) -> Value {
-        let (Window { width, height, .. }, side) = (self.identity.window, self.identity.tile);
-        let mut attributes = json!({ "long_name": layer });
-        if !unit.is_empty() {
-            attributes["units"] = json!(unit);
-        }
-        // The attributes that GDAL reads, and those that xarray's extensions read.
-        if let Some(map) = &self.identity.map {
-            if let Some(code) = map.epsg() {
-                attributes["_CRS"] = json!({ "url": format!("http://www.opengis.net/def/crs/EPSG/0/{code}") });
-            }
-            if let Ok(wkt) = map.wkt() {
-                attributes["crs_wkt"] = json!(wkt);
-            }
-        }
-        metadata::array(&Array {
-            shape: &[height, width],
-            chunk: &[side, side],
-            sides: &["y", "x"],
-            number: Number::F32,
-            attributes,
-        })
+        let [columns, rows] = self.layout.chunks();
+        Stage { rows, columns, samples: self.layout.tile * self.layout.tile * self.layout.layers.len() }
     }
 }
 
-/// A coordinate array: name, values and attributes.
-struct Coordinate {
-    name: &'static str,
-    values: Vec<f64>,
-    attributes: Value,
-}
-
-fn coordinates(window: &Window, map: Option<&Georeference>) -> [Coordinate; 2] {
-    let side = |unit: &str, long: &str, standard: &str, axis: &str| json!({ "units": unit, "long_name": long, "standard_name": standard, "axis": axis });
-    // Subtraction from 0.0 avoids a -0.
-    let (eastings, northings) = (window.eastings(), window.southings().into_iter().map(|south| 0.0 - south));
-    let Some(map) = map else {
-        let east = side("m", "metres east of the origin", "projection_x_coordinate", "X");
-        let north = side("m", "metres north of the origin", "projection_y_coordinate", "Y");
-        return [
-            Coordinate { name: "x", values: eastings, attributes: east },
-            Coordinate { name: "y", values: northings.collect(), attributes: north },
-        ];
-    };
-    let (east, north) = match map.is_degrees() {
-        true => {
-            (side("degrees_east", "longitude", "longitude", "X"), side("degrees_north", "latitude", "latitude", "Y"))
-        }
-        false => (
-            side("m", "easting", "projection_x_coordinate", "X"),
-            side("m", "northing", "projection_y_coordinate", "Y"),
-        ),
-    };
-    [
-        Coordinate { name: "x", values: eastings.iter().map(|x| map.at(*x, 0.0)[0]).collect(), attributes: east },
-        Coordinate { name: "y", values: northings.map(|north| map.at(0.0, -north)[1]).collect(), attributes: north },
-    ]
+/// The path of a chunk of coordinates.
+fn coordinate_path(axis: usize, chunk: usize) -> PathBuf {
+    Path::new(ZarrLayout::axis_name(axis)).join(format!("c/{chunk}"))
 }
 
 impl BuildTarget for Zarr {
@@ -116,12 +51,13 @@ impl BuildTarget for Zarr {
     }
 
     fn window(&self, row: usize, column: usize) -> Window {
-        self.tiling.tile(&self.identity.window, column, row)
+        self.layout.chunk_window(row, column)
     }
 
     fn places(&self, job: Job) -> Vec<JobFile> {
-        let chunk = |layer: &String| JobFile::Result(format!("{layer}/c/{}/{}", job.row, job.column).into());
-        self.identity.layers.iter().map(chunk).collect()
+        let chunk =
+            |(layer, _): &(String, String)| JobFile::Result(format!("{layer}/c/{}/{}", job.row, job.column).into());
+        self.layout.layers.iter().map(chunk).collect()
     }
 
     fn reads(&self, _: Job) -> Vec<Job> {
@@ -129,7 +65,7 @@ impl BuildTarget for Zarr {
     }
 
     fn make(&self, _: Job, grids: &[Grid], _: &OutputStore) -> Result<Made> {
-        let files = grids.iter().map(|grid| pack(&to_bytes(&square(grid, self.identity.tile, f32::NAN)), 4));
+        let files = grids.iter().map(|grid| self.layout.chunk(grid));
         Ok(Made { files: files.collect::<Result<_>>()?, ranges: Vec::new() })
     }
 
@@ -140,69 +76,38 @@ impl BuildTarget for Zarr {
             written.push((path, digest));
             Ok::<(), Error>(())
         };
-        let mut arrays = Vec::new();
-        for coordinate in coordinates(&self.identity.window, self.identity.map.as_ref()) {
-            let folder = Path::new(coordinate.name);
-            let chunk = coordinate.values.len().min(COORDINATES);
-            for (n, values) in coordinate.values.chunks(chunk).enumerate() {
-                // Chunks are complete; values beyond the side are never read.
-                let beyond = std::iter::repeat_n(0.0, chunk - values.len());
-                let bytes =
-                    pack(&values.iter().copied().chain(beyond).flat_map(f64::to_le_bytes).collect::<Vec<u8>>(), 8)?;
-                put(folder.join(format!("c/{n}")), &bytes)?;
+        for axis in [0, 1] {
+            for chunk in 0..self.layout.coordinate_chunks(axis) {
+                put(coordinate_path(axis, chunk), &self.layout.coordinate_chunk(axis, chunk)?)?;
             }
-            let array = metadata::array(&Array {
-                shape: &[coordinate.values.len()],
-                chunk: &[chunk],
-                sides: &[coordinate.name],
-                number: Number::F64,
-                attributes: coordinate.attributes,
-            });
-            arrays.push((coordinate.name.to_string(), array));
         }
-        let layers = self.identity.layers.iter().zip(&self.identity.units);
-        arrays.extend(layers.map(|(layer, unit)| (layer.clone(), self.array(layer, unit))));
-        for (name, array) in &arrays {
-            put(Path::new(name).join("zarr.json"), format!("{array:#}\n").as_bytes())?;
+        for (name, array) in self.layout.arrays() {
+            put(Path::new(&name).join("zarr.json"), format!("{array:#}\n").as_bytes())?;
         }
-        let attributes = json!({
-            "title": self.about,
-            "source": format!("Orogen {}", self.identity.version),
-            "recipe_sha256": self.identity.recipe,
-            "cell": self.identity.window.cell,
-        });
         // Written last: without this file there is no group, so a partial group does not exist.
-        put("zarr.json".into(), format!("{:#}\n", metadata::group(&arrays, attributes)).as_bytes())?;
+        put("zarr.json".into(), format!("{:#}\n", self.layout.group()).as_bytes())?;
         Ok(written)
     }
 
     fn extras(&self) -> Vec<PathBuf> {
         let mut paths = vec![PathBuf::from("zarr.json")];
-        for coordinate in coordinates(&self.identity.window, self.identity.map.as_ref()) {
-            let chunks = coordinate.values.len().div_ceil(COORDINATES);
-            paths.extend((0..chunks).map(|n| Path::new(coordinate.name).join(format!("c/{n}"))));
-            paths.push(Path::new(coordinate.name).join("zarr.json"));
+        for axis in [0, 1] {
+            paths.extend((0..self.layout.coordinate_chunks(axis)).map(|chunk| coordinate_path(axis, chunk)));
+            paths.push(Path::new(ZarrLayout::axis_name(axis)).join("zarr.json"));
         }
-        paths.extend(self.identity.layers.iter().map(|layer| Path::new(layer).join("zarr.json")));
+        paths.extend(self.layout.layers.iter().map(|(layer, _)| Path::new(layer).join("zarr.json")));
         paths
     }
 
     fn scratch_memory(&self) -> u64 {
-        // The padded chunk, its bytes, the shuffled bytes, and the compressed ones.
-        16 * (self.identity.tile * self.identity.tile) as u64
+        self.layout.scratch_memory()
     }
 
     fn disk(&self) -> Disk {
         let stage = self.stage();
         // A chunk takes at most its uncompressed size plus a frame.
-        let (samples, chunks) = (stage.samples as u64, self.identity.layers.len() as u64);
-        let sides = 8 * (self.identity.window.width + self.identity.window.height + 2 * COORDINATES) as u64;
+        let (samples, chunks) = (stage.samples as u64, self.layout.layers.len() as u64);
+        let sides = self.layout.coordinate_bytes();
         Disk { result: stage.len() as u64 * (4 * samples + 64 * chunks) + sides + (1 << 16), scratch: 0 }
     }
-}
-
-/// A chunk of encoded numbers.
-fn pack(bytes: &[u8], size: u8) -> Result<Vec<u8>> {
-    blosc::pack(bytes, size)
-        .ok_or_else(|| Error::new(ErrorKind::Request, "a chunk would be larger than 2 GiB; use smaller tiles"))
 }

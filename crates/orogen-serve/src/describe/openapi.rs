@@ -148,6 +148,12 @@ fn requests() -> Vec<(String, &'static str, &'static str, Vec<Parameter>)> {
     ];
     let mut all: Vec<_> =
         fixed.into_iter().map(|(path, about, kind, parameters)| (path.to_string(), about, kind, parameters)).collect();
+    all.push((
+        "/zarr/{key}".to_string(),
+        "Zarr v3 store of all layers: metadata (`zarr.json`) and chunks (`height/c/ROW/COLUMN`), also in `levels/N`",
+        "application/octet-stream",
+        Vec::new(),
+    ));
     let cell = (CELL, number(), "Distance between the samples that are searched, in metres");
     let search = LocateJob::OPTIONS.iter().map(of_option).chain([cell]).collect();
     all.push(("/locate".to_string(), "Nearest places that satisfy conditions", "application/json", search));
@@ -199,9 +205,9 @@ fn of_option(spec: &OptionSpec) -> Parameter {
 fn operation(prefix: &str, path: &str, about: &str, kind: &str, parameters: Vec<Parameter>) -> Value {
     let whole = format!("{prefix}{path}");
     let mut all: Vec<Value> = Vec::new();
-    for name in ["world", "layer", "z", "x", "y"] {
+    for name in ["world", "layer", "z", "x", "y", "key"] {
         if whole.contains(&format!("{{{name}}}")) {
-            let kind = if matches!(name, "world" | "layer") { "string" } else { "integer" };
+            let kind = if matches!(name, "world" | "layer" | "key") { "string" } else { "integer" };
             all.push(json!({ "name": name, "in": "path", "required": true, "schema": { "type": kind } }));
         }
     }

@@ -133,7 +133,7 @@ impl Random {
 
 #[test]
 fn random_requests_have_an_answer_and_the_server_lives_on() {
-    const WORDS: [&str; 49] = [
+    const WORDS: [&str; 52] = [
         "hills",
         "plain",
         "tiles",
@@ -151,6 +151,9 @@ fn random_requests_have_an_answer_and_the_server_lives_on() {
         "profile",
         "locate",
         "objects.geojson",
+        "zarr",
+        "zarr.json",
+        "c",
         "height.json",
         "slope",
         "0",
