@@ -1,4 +1,4 @@
-"""Checks `orogen serve`: GDAL's drivers for WMTS and XYZ tiles, rasterio, NumPy, xarray and zarrita read what is exported."""
+"""Checks `orogen serve`: GDAL's drivers for WMTS and XYZ tiles, rasterio, NumPy, xarray, zarrita and others read what is exported."""
 
 import io
 import signal
@@ -8,6 +8,7 @@ import urllib.request
 
 import numpy
 import rasterio
+import serve_mesh
 import serve_zarr
 from orogen import BINARY, WORK, Checks, export
 from rasterio.windows import Window
@@ -79,6 +80,7 @@ difference = numpy.abs(decoded - numpy.load(built)).max()
 checks.that("XYZ: the samples of an export", difference <= 0.5 / 256, difference)
 
 serve_zarr.check(checks, base)
+serve_mesh.check(checks, base)
 
 # Errors are sentences.
 try:

@@ -36,8 +36,8 @@ Builds `orogen` in release mode, installs missing clients and runs every step of
   window    clippy and build of the studio's window and of graphics cards
   wasm      the libraries built for WebAssembly, without threads; four presets under node, and a world without files
   remote    builds, caches and elevation models in an object store, moto's: the bytes of local files
-  serve     GDAL's drivers for WMTS and XYZ tiles, rasterio, NumPy, xarray, zarr-python and zarrita read what `orogen serve` answers: the
-            samples of exports
+  serve     GDAL's drivers for WMTS and XYZ tiles, rasterio, NumPy, xarray, zarr-python, zarrita and a decoder of quantized-mesh read what
+            `orogen serve` answers: the samples of exports
   page      Chromium drives the map of `orogen serve` by mouse, keyboard and touch, in both languages: no error, no request to other hosts
   c         a program in C and one in C++ use the library: the samples of an export
   vector    GDAL reads vector tiles: contours at the heights of an export, its lakes and rivers; pmtiles a PMTiles file
@@ -218,7 +218,7 @@ const CLIENTS: &[Client] = &[
         name: "serve",
         apt: &[("node", "nodejs"), ("npm", "npm")],
         pip: &[NUMPY, RASTERIO, XARRAY, ZARR, "aiohttp==3.14.5", "fsspec==2026.9.0"],
-        npm: &["zarrita@0.7.5"],
+        npm: &["zarrita@0.7.5", "@here/quantized-mesh-decoder@1.2.8"],
     },
     Client {
         name: "page",
@@ -300,6 +300,9 @@ const STEPS: &[&Step] = &[
     &beside("page", "Chromium drives the map that is served", || script("page")),
     &beside("c", "a program in C reads the samples of an export", || script("c")),
     &beside("vector", "GDAL reads vector tiles, and pmtiles a PMTiles file", || script("vector")),
+    &beside("serve", "GDAL, rasterio, NumPy, xarray, zarrita and a decoder of meshes read what is served", || {
+        script("serve")
+    }),
     &beside("presets", "the presets' golden hashes at every level", presets::check),
     &beside("meshes", "the glTF validator, trimesh, meshio and admesh read meshes", || script("meshes")),
     &beside("water", "GDAL, SQLite and Shapely read rivers, lakes and watersheds", || script("water")),

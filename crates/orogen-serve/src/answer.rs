@@ -122,18 +122,7 @@ pub fn text(headers: &HeaderMap, kind: &'static str, text: &str, is_private: boo
     }
     let body = match takes_gzip {
         false => Bytes::copy_from_slice(text.as_bytes()),
-        true => {
-            let mut packed = Vec::new();
-            let write = gzip::start(&mut packed).and_then(|mut gzip| {
-                gzip.write_all(text.as_bytes())?;
-                gzip::finish(gzip)
-            });
-            write.map_err(|cause| Refusal {
-                status: StatusCode::INTERNAL_SERVER_ERROR,
-                message: format!("the text cannot be compressed: {cause}"),
-            })?;
-            packed.into()
-        }
+        true => gzipped(text.as_bytes())?.into(),
     };
     let mut response = match takes_gzip {
         false => part(headers, &tag, body, kind)?,
@@ -146,6 +135,23 @@ pub fn text(headers: &HeaderMap, kind: &'static str, text: &str, is_private: boo
         headers.insert(header::CONTENT_ENCODING, HeaderValue::from_static("gzip"));
     }
     Ok(response)
+}
+
+/// Bytes, compressed with gzip.
+///
+/// # Errors
+/// If they cannot be compressed.
+pub fn gzipped(bytes: &[u8]) -> Result<Vec<u8>, Refusal> {
+    let mut packed = Vec::new();
+    let write = gzip::start(&mut packed).and_then(|mut gzip| {
+        gzip.write_all(bytes)?;
+        gzip::finish(gzip)
+    });
+    write.map_err(|cause| Refusal {
+        status: StatusCode::INTERNAL_SERVER_ERROR,
+        message: format!("the answer cannot be compressed: {cause}"),
+    })?;
+    Ok(packed)
 }
 
 /// Whether the client takes gzip: it names it, with a weight above 0.

@@ -15,10 +15,11 @@ use orogen::io::palette::named::{self, Named};
 
 use crate::answer::{self, Life};
 use crate::desk::{Keep, Work};
-use crate::query::{Query, encoded};
+use crate::query::{Query, SEED, SET, encoded};
 use crate::refusal::Refusal;
 use crate::served::{Frame, Served};
 use crate::shared::Shared;
+use crate::variants::Change;
 
 /// A request.
 pub struct Call {
@@ -83,11 +84,20 @@ impl Call {
         self.parts.get(name).map_or("", String::as_str)
     }
 
-    /// The world that the path names, or the only one.
+    /// The world that the path names, or the only one; its variant, if the parameters ask for one.
     ///
     /// # Errors
     /// If there is none.
     pub fn served(&self) -> Result<Arc<Served>, Refusal> {
+        let own = self.named()?;
+        match Change::of(&self.query)? {
+            None => Ok(own),
+            Some(change) => own.variant(&change),
+        }
+    }
+
+    /// The world that the path names, or the only one.
+    fn named(&self) -> Result<Arc<Served>, Refusal> {
         let worlds = &self.shared.worlds;
         let names = || worlds.iter().map(|world| world.name.as_str());
         if !self.is_named {
@@ -171,11 +181,16 @@ impl Call {
         }
     }
 
-    /// Parameters that links to other answers need: those of the request's grid, the version and the token.
+    /// Parameters that links to other answers need: those of the request's grid, the version, the variant and the
+    /// token.
     pub fn link(&self, served: &Served, grid: Option<&str>) -> String {
         let mut link = format!("?v={}", served.version);
         if let Some(grid) = grid {
             link += &format!("&grid={grid}");
+        }
+        for (name, value) in self.query.pairs().filter(|(name, value)| [SEED, SET].contains(name) && !value.is_empty())
+        {
+            link += &format!("&{name}={}", encoded(value));
         }
         if let Some(token) = self.query.get("token") {
             link += &format!("&token={}", encoded(token));

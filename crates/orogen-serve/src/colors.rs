@@ -17,7 +17,7 @@ use crate::served::Served;
 
 /// The answer.
 pub async fn colors(call: Call) -> Result<Response, Refusal> {
-    call.query.only(&["palette"])?;
+    call.query.only_of_variants(&["palette"])?;
     let (served, palette) = (call.served()?, call.palette()?);
     let name = call.part("layer");
     let layer = name
@@ -66,7 +66,7 @@ pub async fn fitted(
         }) as Work
     };
     let name = palette.map_or("", |named| named.name);
-    call.shared.desk.get(format!("fit {} {layer} {name}", served.name), Keep::Work, work).await?;
+    call.shared.desk.get(format!("fit {} {} {layer} {name}", served.name, served.version), Keep::Work, work).await?;
     let missing = || Refusal::busy("the layer is being prepared; send the request again");
     served.ready_map(layer, palette).ok_or_else(missing)
 }

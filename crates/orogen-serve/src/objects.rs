@@ -52,7 +52,7 @@ pub async fn geojson(call: Call) -> Result<Response, Refusal> {
         return Err(Refusal::absent(format!("there are no features `{asked}`; {}", words::suggestion(asked, names()))));
     };
     let known: Vec<&str> = PARAMETERS.into_iter().chain(options(layer).map(|spec| spec.name)).collect();
-    call.query.only(&known)?;
+    call.query.only_of_variants(&known)?;
     let given =
         call.query.pairs().filter(|(name, value)| options(layer).any(|spec| spec.name == *name) && !value.is_empty());
     let options = Options::of(options(layer), given)?;

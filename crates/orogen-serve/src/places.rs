@@ -17,7 +17,7 @@ pub const CELL: &str = "cell";
 pub async fn locate(call: Call) -> Result<Response, Refusal> {
     let specs = LocateJob::OPTIONS;
     let names: Vec<&str> = specs.iter().map(|spec| spec.name).chain([CELL]).collect();
-    call.query.only(&names)?;
+    call.query.only_of_variants(&names)?;
     let served = call.served()?;
     let cell = call.query.number(CELL)?;
     cell.map_or(Ok(()), check_cell)?;

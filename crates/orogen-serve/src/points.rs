@@ -30,7 +30,7 @@ fn place(served: &Served) -> Georeference {
 
 /// `/height?x=&y=`.
 pub async fn height(call: Call) -> Result<Response, Refusal> {
-    call.query.only(&["x", "y", "layer"])?;
+    call.query.only_of_variants(&["x", "y", "layer"])?;
     let served = call.served()?;
     let (Some(x), Some(y)) = (call.query.number("x")?, call.query.number("y")?) else {
         let message = "give `x` and `y`: map coordinates, or metres east and north of the world's north-west corner, such as x=1200&y=-800";
@@ -45,7 +45,7 @@ pub async fn height(call: Call) -> Result<Response, Refusal> {
 
 /// `/profile?points=`.
 pub async fn profile(call: Call) -> Result<Response, Refusal> {
-    call.query.only(&["points", "samples", "layer"])?;
+    call.query.only_of_variants(&["points", "samples", "layer"])?;
     let served = call.served()?;
     let corners = corners(call.query.get("points").unwrap_or_default())?;
     let samples = call.query.count("samples", 2..=MAX_ALONG)?.unwrap_or(ALONG);

@@ -8,6 +8,11 @@ use crate::refusal::Refusal;
 #[derive(Debug, Default)]
 pub struct Query(Vec<(String, String)>);
 
+/// Parameters of requests that are answered for a variant of the world: another seed, and `NAME=VALUE` for other
+/// numbers, which may be given several times.
+pub const SEED: &str = "seed";
+pub const SET: &str = "set";
+
 /// Parameters of every request: the token, and the version in links of descriptions.
 const ALWAYS: [&str; 2] = ["token", "v"];
 
@@ -21,7 +26,7 @@ impl Query {
         for pair in text.split('&').filter(|pair| !pair.is_empty()) {
             let (name, value) = pair.split_once('=').unwrap_or((pair, ""));
             let (name, value) = (decoded(name)?, decoded(value)?);
-            if pairs.iter().any(|(other, _)| *other == name) {
+            if name != SET && pairs.iter().any(|(other, _)| *other == name) {
                 return Err(Refusal::bad(format!("the parameter `{name}` is given twice; give it once")));
             }
             pairs.push((name, value));
@@ -43,6 +48,15 @@ impl Query {
             (None, known) => format!("it has {}", words::list(known.iter().copied())),
         };
         Err(Refusal::bad(format!("this request has no parameter `{name}`; {hint}")))
+    }
+
+    /// [`Query::only`] for requests that are answered for variants.
+    ///
+    /// # Errors
+    /// If there are other parameters.
+    pub fn only_of_variants(&self, known: &[&str]) -> Result<(), Refusal> {
+        let known: Vec<&str> = known.iter().copied().chain([SEED, SET]).collect();
+        self.only(&known)
     }
 
     /// The value of a parameter; an empty one counts as not given.
@@ -142,6 +156,8 @@ mod tests {
             ("a=%ff", "percent-encoded"),
             ("a=%4", "percent-encoded"),
             ("a=1&a=2", "given twice"),
+            ("seed=1&seed=2", "given twice"),
+            ("set=a=1&set=b=2", "no parameter `set`"),
         ] {
             let refusal = Query::parse(text).and_then(|query| query.only(&["bbox", "width"])).unwrap_err();
             assert!(refusal.message.contains(expect), "{text}: {}", refusal.message);

@@ -14,10 +14,10 @@ use axum::routing::get;
 use crate::call::{Call, route};
 use crate::refusal::Refusal;
 use crate::shared::{Client, Shared};
-use crate::{answer, colors, describe, objects, page, places, points, tiles, vector, windows, zarr};
+use crate::{answer, colors, describe, meshes, objects, page, places, points, tiles, vector, windows, zarr};
 
 /// First parts of paths that no world can have as its name.
-pub const RESERVED: [&str; 23] = [
+pub const RESERVED: [&str; 24] = [
     "tiles",
     "terrarium",
     "terrain-rgb",
@@ -27,6 +27,7 @@ pub const RESERVED: [&str; 23] = [
     "height",
     "profile",
     "locate",
+    "mesh",
     "vector",
     "zarr",
     "map",
@@ -37,11 +38,10 @@ pub const RESERVED: [&str; 23] = [
     "assets",
     "book",
     "colors",
-    "mesh",
     "objects",
     "studio",
     "world",
-    "zarr",
+    "recipe",
 ];
 
 /// Path of the check that the server lives, which needs no token.
@@ -64,6 +64,7 @@ pub fn router(shared: &Arc<Shared>) -> Router {
             .route(&format!("{prefix}/terrain-rgb/{{z}}/{{x}}/{{y}}"), route(tiles::terrain_rgb))
             .route(&format!("{prefix}/vector/{{z}}/{{x}}/{{y}}"), route(vector::tile))
             .route(&format!("{prefix}/tilejson/{{layer}}"), route(describe::tilejson::tilejson))
+            .route(&format!("{prefix}/recipe.json"), route(describe::recipe::recipe))
             .route(&format!("{prefix}/wmts"), route(describe::wmts::capabilities))
             .route(&format!("{prefix}/wmts/1.0.0/WMTSCapabilities.xml"), route(describe::wmts::capabilities))
             .route(&format!("{prefix}/colors/{{layer}}"), route(colors::colors))
@@ -73,6 +74,8 @@ pub fn router(shared: &Arc<Shared>) -> Router {
             .route(&format!("{prefix}/height"), route(points::height))
             .route(&format!("{prefix}/profile"), route(points::profile))
             .route(&format!("{prefix}/locate"), route(places::locate))
+            .route(&format!("{prefix}/mesh/layer.json"), route(meshes::layer))
+            .route(&format!("{prefix}/mesh/{{z}}/{{x}}/{{y}}"), route(meshes::tile))
             .route(&format!("{prefix}/zarr/{{*key}}"), route(zarr::zarr));
         for format in windows::formats() {
             let path = format!("{prefix}/window.{}", format.name);

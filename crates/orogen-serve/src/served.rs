@@ -75,6 +75,8 @@ pub struct Served {
     maps: Mutex<HashMap<[String; 2], Arc<MapTiles>>>,
     samplers: Mutex<HashMap<String, Arc<Sampler<Arc<World>>>>>,
     vector: Arc<VectorTiles>,
+    /// Variants that were requested last.
+    pub variants: Mutex<Vec<(String, Arc<Served>)>>,
     /// The levels of its Zarr store, once it was requested.
     pub zarr: OnceLock<Vec<ZarrLayout>>,
     /// Changes with anything that an answer depends on.
@@ -82,7 +84,7 @@ pub struct Served {
 }
 
 /// Data under these locks is consistent at any time, also after a panic of another thread.
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -107,6 +109,7 @@ impl Served {
             derived: Mutex::default(),
             maps: Mutex::default(),
             samplers: Mutex::default(),
+            variants: Mutex::default(),
             zarr: OnceLock::new(),
             version: String::new(),
         };

@@ -3,8 +3,10 @@
 mod bad_requests;
 mod client;
 mod descriptions;
+mod meshes;
 mod page;
 mod samples;
+mod variants;
 mod vector;
 mod vector_reader;
 mod work;

@@ -94,8 +94,9 @@ impl Address {
 
 /// `/tiles/{layer}/{z}/{x}/{y}.png`.
 pub async fn map(call: Call) -> Result<Response, Refusal> {
-    call.query.only(&["grid", "palette"])?;
-    let (served, frame, address, palette) = (call.served()?, call.frame()?, Address::of_picture(&call)?, call.palette()?);
+    call.query.only_of_variants(&["grid", "palette"])?;
+    let (served, frame, address, palette) =
+        (call.served()?, call.frame()?, Address::of_picture(&call)?, call.palette()?);
     let layer = call.part("layer").to_string();
     let named = palette.map_or("own", |named| named.name);
     let key = address.key(&served, &format!("map {named}"), &layer, frame)?;
@@ -145,7 +146,7 @@ impl Surface {
 }
 
 async fn encoded(call: Call, encoding: Encoding) -> Result<Response, Refusal> {
-    call.query.only(&["grid", "surface"])?;
+    call.query.only_of_variants(&["grid", "surface"])?;
     let (served, frame, address) = (call.served()?, call.frame()?, Address::of_picture(&call)?);
     let (named, surface) = Surface::read(&call)?;
     let key = address.key(&served, &format!("{} {named}", encoding.name()), HEIGHT, frame)?;

@@ -27,7 +27,7 @@ pub const INTERVALS: std::ops::RangeInclusive<f64> = 1e-3..=1e5;
 
 /// `/vector/{z}/{x}/{y}.mvt`.
 pub async fn tile(call: Call) -> Result<Response, Refusal> {
-    call.query.only(&["grid", LAYERS, INTERVAL])?;
+    call.query.only_of_variants(&["grid", LAYERS, INTERVAL])?;
     let (served, frame) = (call.served()?, call.frame()?);
     let address = Address::read(&call, ".mvt", VectorTiles::SIDE)?;
     let vector = Arc::clone(served.vector());
@@ -70,5 +70,5 @@ async fn found(call: &Call, served: &Arc<Served>) -> Result<(), Refusal> {
             Ok(Bytes::new())
         }) as Work
     };
-    call.shared.desk.get(format!("features {}", served.name), Keep::Work, work).await.map(drop)
+    call.shared.desk.get(format!("features {} {}", served.name, served.version), Keep::Work, work).await.map(drop)
 }

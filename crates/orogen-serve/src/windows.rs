@@ -182,7 +182,7 @@ fn options(call: &Call, format: &Format, layer: &str) -> Result<(Options, Option
         .chain(own.clone().map(|spec| spec.name))
         .chain(derived.iter().map(|spec| spec.name))
         .collect();
-    call.query.only(&known)?;
+    call.query.only_of_variants(&known)?;
     let given = |specs: &[&str]| -> Vec<(&str, &str)> {
         call.query.pairs().filter(|(name, _)| specs.contains(name) && !PARAMETERS.contains(name)).collect()
     };

@@ -4,7 +4,8 @@ use crate::failure::Result;
 use crate::shell::{cargo, run as sh};
 
 /// The packages of the release build, with object stores and the server.
-pub const BUILT: &str = "--package orogen-cli --package orogen-py --package orogen-c --features orogen-cli/remote,orogen-cli/serve";
+pub const BUILT: &str =
+    "--package orogen-cli --package orogen-py --package orogen-c --features orogen-cli/remote,orogen-cli/serve";
 
 /// The tests with the store that fails, and clippy: they compile the clients of stores and the libraries again.
 pub fn check_faults() -> Result {

@@ -406,11 +406,7 @@ impl Recipe {
         self.parameters.write_toml(&mut text);
         world_spec::KEYS.write("[world]", &self.world, &mut text);
         let bound = self.parameters.bound();
-        let surfaces = self.expanded.iter().map(|surface| &surface.nodes);
-        let scatter = self.expanded_scatter.iter().map(|scatter| &scatter.nodes);
-        let expanded = surfaces.chain(scatter).chain(self.expanded_classes.iter().map(|class| &class.nodes));
-        let added = |at: &usize| expanded.clone().any(|nodes| nodes.contains(at));
-        for (_, NamedNode { name, node, mask }) in self.nodes.iter().enumerate().filter(|(at, _)| !added(at)) {
+        for NamedNode { name, node, mask } in self.own_nodes() {
             let spec = node.spec();
             let _ = writeln!(text, "\n[nodes.{}]\nop = {:?}", toml_key(name), spec.op);
             let inputs = |text: &mut String| {
@@ -445,6 +441,15 @@ impl Recipe {
         self.classes.iter().for_each(|class| CLASSES.write(class, &mut text));
         let specs = self.nodes.iter().map(|named| named.node.spec());
         self.parameters.restore(text, |op| specs.clone().find(|spec| spec.op == op))
+    }
+
+    /// The nodes of its text, without those that surfaces, scatter and classes add.
+    pub(super) fn own_nodes(&self) -> impl Iterator<Item = &NamedNode> {
+        let surfaces = self.expanded.iter().map(|surface| &surface.nodes);
+        let scatter = self.expanded_scatter.iter().map(|scatter| &scatter.nodes);
+        let expanded = surfaces.chain(scatter).chain(self.expanded_classes.iter().map(|class| &class.nodes));
+        let is_own = move |at: &usize| !expanded.clone().any(|nodes| nodes.contains(at));
+        self.nodes.iter().enumerate().filter(move |(at, _)| is_own(at)).map(|(_, named)| named)
     }
 
     /// Whether a name in an expression refers to this input by default.

@@ -36,6 +36,8 @@ mod subgraph;
 pub mod surface;
 mod text;
 mod toml;
+#[doc(hidden)]
+pub mod values;
 mod world_spec;
 
 pub use class::TerrainClass;

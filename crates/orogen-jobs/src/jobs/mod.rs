@@ -22,6 +22,8 @@ mod map_options;
 pub mod map_tiles;
 pub mod map_water;
 #[doc(hidden)]
+pub mod mesh_tiles;
+#[doc(hidden)]
 pub mod noise;
 #[doc(hidden)]
 pub mod render;

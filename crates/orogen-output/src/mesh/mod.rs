@@ -25,6 +25,7 @@ mod clip;
 mod engraving;
 #[doc(hidden)]
 pub mod glb;
+mod globe;
 mod monotone;
 #[doc(hidden)]
 pub mod normal_map;
@@ -36,6 +37,8 @@ mod outline;
 mod packed;
 #[doc(hidden)]
 pub mod ply;
+#[doc(hidden)]
+pub mod quantized;
 #[doc(hidden)]
 pub mod relief;
 mod sample_set;

@@ -3,6 +3,7 @@
 pub mod escape;
 pub mod index;
 pub mod openapi;
+pub mod recipe;
 pub mod tilejson;
 pub mod wmts;
 pub mod world;

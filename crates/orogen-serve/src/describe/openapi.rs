@@ -12,6 +12,7 @@ use crate::call::Call;
 use crate::objects;
 use crate::places::CELL;
 use crate::points::MAX_ALONG;
+use crate::query::{SEED, SET};
 use crate::refusal::Refusal;
 use crate::vector;
 use crate::windows;
@@ -149,6 +150,28 @@ fn requests() -> Vec<(String, &'static str, &'static str, Vec<Parameter>)> {
     let mut all: Vec<_> =
         fixed.into_iter().map(|(path, about, kind, parameters)| (path.to_string(), about, kind, parameters)).collect();
     all.push((
+        "/recipe.json".to_string(),
+        "The seed and the numbers that `seed` and `set` can change: values, ranges, units",
+        "application/json",
+        Vec::new(),
+    ));
+    all.push((
+        "/mesh/layer.json".to_string(),
+        "Description of the tiles of meshes, for Cesium",
+        "application/json",
+        Vec::new(),
+    ));
+    all.push((
+        "/mesh/{z}/{x}/{y}.terrain".to_string(),
+        "Tile of a mesh of the heights, quantized-mesh 1.0; rows count from the south",
+        "application/vnd.quantized-mesh",
+        vec![(
+            "extensions",
+            json!({ "type": "string" }),
+            "Extensions with `-` between them: octvertexnormals, metadata; otherwise those of the header `Accept`",
+        )],
+    ));
+    all.push((
         "/zarr/{key}".to_string(),
         "Zarr v3 store of all layers: metadata (`zarr.json`) and chunks (`height/c/ROW/COLUMN`), also in `levels/N`",
         "application/octet-stream",
@@ -176,6 +199,9 @@ fn requests() -> Vec<(String, &'static str, &'static str, Vec<Parameter>)> {
         parameters.extend(list::options().into_iter().map(|(spec, _)| of_option(spec)));
         all.push((format!("/window.{}", format.name), format.about, windows::media_type(format), parameters));
     }
+    for (_, _, _, parameters) in all.iter_mut().filter(|(path, ..)| path != "/zarr/{key}" && path != "/addresses") {
+        parameters.extend(variant());
+    }
     all
 }
 
@@ -195,6 +221,18 @@ fn window_features() -> Vec<Parameter> {
         }
     }
     all
+}
+
+/// Parameters that choose a variant of the world.
+fn variant() -> [Parameter; 2] {
+    [
+        (SEED, json!({ "type": "integer", "minimum": 0 }), "Another seed of the world"),
+        (
+            SET,
+            json!({ "type": "array", "items": { "type": "string" } }),
+            "NAME=VALUE: another value of a number that `/recipe.json` lists; may be given several times",
+        ),
+    ]
 }
 
 /// An option of a format or a layer as a parameter.

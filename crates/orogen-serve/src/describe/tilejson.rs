@@ -34,7 +34,7 @@ pub fn tiles_of(layer: &str) -> (String, Option<Encoding>) {
 
 /// The answer.
 pub async fn tilejson(call: Call) -> Result<Response, Refusal> {
-    call.query.only(&["grid", "palette", "surface"])?;
+    call.query.only_of_variants(&["grid", "palette", "surface"])?;
     let (served, frame) = (call.served()?, call.frame()?);
     let name = call.part("layer");
     let layer = name

@@ -17,7 +17,7 @@ use crate::windows;
 
 /// The answer.
 pub async fn world(call: Call) -> Result<Response, Refusal> {
-    call.query.only(&[])?;
+    call.query.only_of_variants(&[])?;
     let served = call.served()?;
     let recipe = served.recipe();
     let spec = &recipe.world;

@@ -133,7 +133,7 @@ impl Random {
 
 #[test]
 fn random_requests_have_an_answer_and_the_server_lives_on() {
-    const WORDS: [&str; 52] = [
+    const WORDS: [&str; 55] = [
         "hills",
         "plain",
         "tiles",
@@ -152,6 +152,9 @@ fn random_requests_have_an_answer_and_the_server_lives_on() {
         "locate",
         "objects.geojson",
         "zarr",
+        "mesh",
+        "layer.json",
+        "0.terrain",
         "zarr.json",
         "c",
         "height.json",
@@ -187,7 +190,7 @@ fn random_requests_have_an_answer_and_the_server_lives_on() {
         ".png",
         "{z}",
     ];
-    const QUERIES: [&str; 23] = [
+    const QUERIES: [&str; 27] = [
         "grid=web",
         "grid=world",
         "grid=",
@@ -210,6 +213,10 @@ fn random_requests_have_an_answer_and_the_server_lives_on() {
         "layer=rivers",
         "interval=1e-3",
         "v=1",
+        "seed=3",
+        "set=noise.octaves=2",
+        "set=noise.wavelength=-1",
+        "set=",
         "&&=&",
     ];
     let server = start(&[("hills", HILLS), ("plain", PLAIN)], &[("max-samples", "4096")]);

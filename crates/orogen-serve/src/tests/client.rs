@@ -72,7 +72,8 @@ pub fn start(worlds: &[(&str, &str)], given: &[(&'static str, &str)]) -> Running
 
 /// A server with this much memory.
 pub fn start_within(worlds: &[(&str, &str)], given: &[(&'static str, &str)], memory: u64) -> Running {
-    let options = orogen::Options { threads: Some(2), memory: orogen::Budget::of(memory), ..orogen::Options::default() };
+    let options =
+        orogen::Options { threads: Some(2), memory: orogen::Budget::of(memory), ..orogen::Options::default() };
     started(Session::new(options).unwrap(), worlds, given)
 }
 
