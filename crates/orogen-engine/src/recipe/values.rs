@@ -52,13 +52,17 @@ fn scalar(param: &ParamSpec) -> Option<bool> {
 }
 
 impl Recipe {
-    /// The scalar parameters of its own nodes, in the order of the text.
+    /// The scalar parameters of its own nodes, in the order of the text. Nodes that read a file have none: files that
+    /// were read stay read.
     #[doc(hidden)]
     #[must_use]
     pub fn scalars(&self) -> Vec<NodeScalar> {
         let mut scalars = Vec::new();
         for NamedNode { name, node, .. } in self.own_nodes() {
             let spec = node.spec();
+            if spec.params.iter().any(|param| matches!(param.shape, Shape::File)) {
+                continue;
+            }
             for (i, param) in spec.params.iter().enumerate() {
                 let (Some(is_whole), Some(value)) = (scalar(param), node.param(i).number()) else { continue };
                 let range = match param.shape {
@@ -194,6 +198,20 @@ height = "land"
         let scalars = recipe().scalars();
         let found = scalars.iter().find(|scalar| scalar.name() == "noise.wavelength").unwrap();
         assert_eq!((found.value, found.unit, found.is_whole, found.op), (900.0, "m", false, "fbm"));
+    }
+
+    #[test]
+    fn nodes_that_read_a_file_have_nothing_to_set() {
+        let text = TEXT.replace("[outputs]", "[nodes.place]\nop = \"dem\"\npath = \"nowhere.tif\"\n[outputs]");
+        let recipe = Recipe::parse(&text, "test").unwrap();
+        assert!(recipe.scalars().iter().all(|scalar| scalar.node != "place"));
+        assert!(recipe.with_values(None, &[("place.band".into(), 1.0)]).is_err());
+        // Files keep their folder and what was read of them.
+        let mut based = recipe.clone();
+        based.set_base_dir(std::path::Path::new("folder"));
+        let changed = based.with_values(None, &[("relief".into(), 500.0)]).unwrap();
+        assert_eq!(changed.files(), based.files());
+        assert_ne!(changed.files(), recipe.files());
     }
 
     #[test]

@@ -166,7 +166,7 @@ impl QuantizedTile<'_> {
         put_u32(vertices.len(), &mut out);
         [u, v, h].iter().for_each(|numbers| put_differences(numbers, &mut out));
         let is_wide = vertices.len() > 1 << 16;
-        while is_wide && out.len() % 4 != 0 {
+        while is_wide && !out.len().is_multiple_of(4) {
             out.push(0);
         }
         let put = |index: u32, out: &mut Vec<u8>| match is_wide {

@@ -60,7 +60,7 @@ fn vertices_are_samples_of_the_world() {
 fn edge(found: &[(u64, u64, f64)], edge: usize) -> BTreeMap<u64, i64> {
     let on = found.iter().filter(|(u, v, _)| [*u == 0, *v == 0, *u == CELLS, *v == CELLS][edge]);
     // Heights in the smallest step of all zooms.
-    on.map(|(u, v, height)| (if edge % 2 == 0 { *v } else { *u }, (height * 1024.0).round() as i64)).collect()
+    on.map(|(u, v, height)| (if edge.is_multiple_of(2) { *v } else { *u }, (height * 1024.0).round() as i64)).collect()
 }
 
 #[test]
