@@ -18,6 +18,7 @@ mod peer;
 mod python;
 mod resolution;
 mod rows;
+mod serve;
 mod sizes;
 mod studio;
 mod tiles;
@@ -42,6 +43,7 @@ const AREAS: &[Area] = &[
     ("python", python::run),
     #[cfg(feature = "gpu")]
     ("gpu", gpu::run),
+    ("serve", serve::run),
     ("resolution", resolution::run),
 ];
 

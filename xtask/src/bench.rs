@@ -33,6 +33,8 @@ Builds the benches at full optimization, measures one area (or all in turn) and 
                studio    from a change of a parameter to the pictures of the studio, without the drawing of the window; all cores, wall time
                python    windows, hydrology, analysis and noise from the Python package compared with the same calls in Rust and with richdem, fastscapelib,
                          pysheds, xarray-spatial, WhiteboxTools, noise and opensimplex (installed with pip, as above), CPU time
+               serve     `orogen serve` under load over loopback: warm and cold tiles, memory of mixed requests, requests that are aborted; --case soak
+                         takes ten minutes
                gpu       only if it is named: terrain and pictures on the first graphics card, beside a copy within its memory and beside the
                          processor, wall time; a software adapter has no targets
   --json FILE  also write the rows as JSON; needs an AREA
@@ -64,7 +66,7 @@ How to read the table: docs/benchmarks.md.
 ";
 
 /// The areas of the bench program.
-const AREAS: &[&str] = &["noise", "erosion", "generate", "world", "outputs", "tiles", "studio", PYTHON];
+const AREAS: &[&str] = &["noise", "erosion", "generate", "world", "outputs", "tiles", "studio", PYTHON, "serve"];
 
 /// An area that needs the Python package.
 const PYTHON: &str = "python";
@@ -102,7 +104,7 @@ pub fn run(args: &[String]) -> Result {
         return Err(Failure::usage("--json holds one area: name it"));
     }
     // Whole runs are measured with the program that users run.
-    shell::run(&mut shell::cargo("build --quiet --release --package orogen-cli"))?;
+    shell::run(&mut shell::cargo("build --quiet --release --package orogen-cli --features orogen-cli/serve"))?;
     let program = shell::target_dir().join("release").join(format!("orogen{}", std::env::consts::EXE_SUFFIX));
     for area in areas {
         if area == REALISM {

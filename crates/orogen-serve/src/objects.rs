@@ -1,4 +1,5 @@
-//! `/objects.geojson`: objects, rivers, lakes, summits, contours and coasts of a window, as `orogen export` writes them.
+//! `/objects.geojson`: objects, rivers, lakes, summits, contours and coasts of a window, as `orogen export` writes
+//! them.
 
 use std::io::{self, Write};
 use std::path::Path;

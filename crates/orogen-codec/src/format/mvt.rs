@@ -168,8 +168,8 @@ impl Commands {
     fn push(&mut self, command: u32, points: &[[i32; 2]]) {
         self.command(command, points.len());
         for point in points {
-            for axis in 0..2 {
-                let step = point[axis].wrapping_sub(self.at[axis]);
+            for (unit, last) in point.iter().zip(self.at) {
+                let step = unit.wrapping_sub(last);
                 append_varint(&mut self.bytes, u64::from(((step << 1) ^ (step >> 31)) as u32));
             }
             self.at = *point;

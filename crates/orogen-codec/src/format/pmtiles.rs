@@ -32,7 +32,7 @@ pub fn tile_number(zoom: u32, column: u64, row: u64) -> u64 {
     for bit in (0..zoom).rev() {
         let side = 1 << bit;
         let [right, down] = [u64::from(x & side != 0), u64::from(y & side != 0)];
-        number += side * side * (3 * right ^ down);
+        number += side * side * ((3 * right) ^ down);
         if down == 0 {
             if right == 1 {
                 x = side.wrapping_sub(1).wrapping_sub(x) & (side - 1);

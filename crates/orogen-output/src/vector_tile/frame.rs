@@ -87,6 +87,7 @@ fn buffered() -> Rectangle {
 }
 
 /// A line given in units, as lines of whole units.
+#[must_use]
 pub fn lines_of(path: &[[f64; 2]]) -> Vec<Vec<[i32; 2]>> {
     if path.len() > 3 && path.first() == path.last() && is_small(path) {
         return Vec::new();

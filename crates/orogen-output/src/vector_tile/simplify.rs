@@ -4,15 +4,12 @@
 /// points are kept, so that parts of a line between fixed points do not depend on the parts around them.
 pub fn simplified(points: &[[f64; 2]], is_fixed: &[bool], tolerance: f64) -> Vec<[f64; 2]> {
     let Some(last) = points.len().checked_sub(1) else { return Vec::new() };
-    let mut keep = vec![false; points.len()];
-    let mut left = Vec::new();
-    let mut from = 0;
-    for at in 0..=last {
-        if at == 0 || at == last || is_fixed.get(at).copied().unwrap_or(false) {
-            keep[at] = true;
-            left.push((from, at));
-            from = at;
-        }
+    let is_kept = |at: usize| at == 0 || at == last || is_fixed.get(at).copied().unwrap_or(false);
+    let mut keep: Vec<bool> = (0..points.len()).map(is_kept).collect();
+    let (mut left, mut from) = (Vec::new(), 0);
+    for at in (1..=last).filter(|at| is_kept(*at)) {
+        left.push((from, at));
+        from = at;
     }
     while let Some((first, end)) = left.pop() {
         let inner = points.get(first + 1..end).unwrap_or_default();

@@ -192,7 +192,7 @@ fn features_are_those_of_an_export() {
             .with_options(Options::of(geojson.options, options).unwrap());
         let mut bytes = Vec::new();
         job.to_stream(&world, &mut bytes, &Progress::none()).unwrap();
-        let path = format!("/objects.geojson?layer={name}&bbox=1000,-1490,2990,-500&{more}");
+        let path = format!("/objects.geojson?layer={name}&bbox=1000,-1500,3000,-500&{more}");
         let reply = server.get(&path);
         assert_eq!((reply.status, reply.header("content-type")), (200, "application/geo+json"), "{reply:?}");
         assert!(reply.body == bytes && reply.json()["features"][0].is_object(), "{name}");
@@ -201,7 +201,7 @@ fn features_are_those_of_an_export() {
     }
     // Objects are the default.
     assert_eq!(
-        server.get("/objects.geojson?bbox=1000,-1490,2990,-500").body,
-        server.get("/objects.geojson?layer=objects&bbox=1000,-1490,2990,-500").body
+        server.get("/objects.geojson?bbox=1000,-1500,3000,-500").body,
+        server.get("/objects.geojson?layer=objects&bbox=1000,-1500,3000,-500").body
     );
 }

@@ -95,6 +95,7 @@ pub static ALL: [&TileLayerSpec; 5] = [&LAKES, &CONTOURS, &RIVERS, &OBJECTS, &SU
 
 impl TileLayerSpec {
     /// The names of the attributes.
+    #[must_use]
     pub fn names(&self) -> Vec<&'static str> {
         self.fields.iter().map(|field| field.field.name).collect()
     }
