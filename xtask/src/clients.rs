@@ -5,6 +5,7 @@
 
 mod asan;
 mod blender;
+mod book;
 mod gpu;
 mod install;
 mod neon;
@@ -59,6 +60,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step of
   layers    WhiteboxTools and traces along flow directions give the same layers of water
   taplo     taplo validates every recipe against the JSON Schema, and rejects broken ones
   python    the Python package in a new environment: its tests, its types, its generated files
+  book      the documentation as a site: every link leads somewhere; the commands and scripts of tutorial, cookbook and engines draw its pictures
   studio    the studio's tests with Mesa's software Vulkan, and its window under Xvfb in both languages: eleven jobs by mouse and keyboard
   gpu       fields, filters, presets and pictures on a graphics card, or Mesa's software Vulkan, beside the processor's; and without any card
 
@@ -213,6 +215,7 @@ const CLIENTS: &[Client] = &[
         ],
         npm: &["pyright@1.1.414"],
     },
+    Client { name: "book", apt: &[], pip: &[NUMPY, "matplotlib==3.11.2"], npm: &[] },
     Client { name: "remote", apt: &[], pip: &[NUMPY, RASTERIO, MOTO], npm: &[] },
     Client {
         name: "serve",
@@ -295,6 +298,7 @@ const STEPS: &[&Step] = &[
     &beside("window", "clippy and build of the studio's window and of graphics cards", studio::build),
     &beside("wasm", "four presets made by the libraries built for WebAssembly", wasm::check_four),
     &beside("python", "the Python package in a new environment", python::check),
+    &beside("book", "the documentation as a site, and the commands of its pages", book::check),
     &beside("remote", "builds, caches and heights in an object store, moto's", || script("remote")),
     &beside("serve", "GDAL, rasterio, NumPy, xarray and zarrita read what is served", || script("serve")),
     &beside("page", "Chromium drives the map that is served", || script("page")),

@@ -1,7 +1,7 @@
 //! `cargo xtask gallery`: makes the pictures of the README and the docs with `orogen` itself.
 
 use crate::failure::{Failure, Result, on_file};
-use crate::{codegen, shell};
+use crate::{book, codegen, shell};
 
 mod base64;
 mod blocks;
@@ -16,7 +16,7 @@ mod windows;
 pub const ABOUT: &str = "make the pictures in docs/images and in the noises' docs";
 
 pub const HELP: &str = "
-Usage: cargo xtask gallery [PRESET | studio]
+Usage: cargo xtask gallery [PRESET | studio | book]
 
 Rewrites docs/images/: one relief map of each preset, the views of docs/render.md and the README's first picture, a
 map sheet, the zoom of docs/levels.md, water as vectors, a tilemap, blocks, all palettes, the page of noises side by side, and the chunks around a viewer. Pictures of the studio's window stay. Then the pictures
@@ -25,6 +25,7 @@ crates/orogen-noise/docs/gallery.md: the pictures at the top of the documentatio
 file, so that every renderer shows them.
 
   PRESET  make the pictures of this preset alone, and docs/gallery.md
+  book    write the recipes and the pictures of the tutorial, the cookbook and the pages for engines, from the pages' own commands
   studio  take the pictures of jobs in the studio that the last `cargo xtask clients studio` left
 ";
 
@@ -35,6 +36,7 @@ pub fn run(args: &[String]) -> Result {
     let presets: Vec<(&str, &str)> = listed.lines().filter_map(|line| line.split_once(char::is_whitespace)).collect();
     match args {
         [] => {}
+        [named] if named == "book" => return book_pictures(),
         [named] if named == "studio" => return windows::write(&images),
         [named] if presets.iter().any(|(preset, _)| preset == named) => {
             presets::write(named, &images)?;
@@ -79,4 +81,11 @@ pub fn run(args: &[String]) -> Result {
     std::fs::copy(work.join("infinite_terrain.png"), &chunks).map_err(|e| on_file("write", &chunks, &e))?;
     println!("{}", shell::relative(&chunks));
     noises::write(&work)
+}
+
+/// The recipes and pictures of the pages whose commands are run.
+fn book_pictures() -> Result {
+    shell::run(&mut shell::cargo("build --quiet --release --package orogen-cli"))?;
+    let orogen = shell::target_dir().join("release").join(format!("orogen{}", std::env::consts::EXE_SUFFIX));
+    book::write(&orogen, &shell::target_dir().join("gallery/book"))
 }

@@ -1,5 +1,7 @@
 //! Licences of dependencies: licences that would bind a program built with Orogen are rejected.
 
+use std::path::Path;
+
 use serde_json::Value;
 
 use crate::failure::{Failure, Result};
@@ -30,7 +32,14 @@ const ACCEPTED: &[&str] = &[
 
 /// Checks every package that this workspace may be built with, optional ones included.
 pub fn check() -> Result {
-    let text = shell::capture(&mut shell::cargo("metadata --all-features --format-version 1"))?;
+    check_of(None)
+}
+
+/// Checks the packages of another workspace, or of this one.
+pub fn check_of(manifest: Option<&Path>) -> Result {
+    let mut metadata = shell::cargo("metadata --all-features --format-version 1");
+    metadata.args(manifest.iter().flat_map(|manifest| ["--manifest-path".as_ref(), manifest.as_os_str()]));
+    let text = shell::capture(&mut metadata)?;
     let metadata: Value =
         serde_json::from_str(&text).map_err(|e| Failure::new(format!("cargo metadata printed no JSON: {e}")))?;
     let packages = metadata["packages"].as_array().map(Vec::as_slice).unwrap_or_default();

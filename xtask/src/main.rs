@@ -4,6 +4,7 @@
 mod adding;
 mod bench;
 mod bless;
+mod book;
 mod clients;
 mod codegen;
 mod compiled;
@@ -46,6 +47,7 @@ const COMMANDS: &[Command] = &[
     Command { name: "codegen", about: codegen::ABOUT, help: codegen::HELP, run: codegen::run },
     Command { name: "bless", about: bless::ABOUT, help: bless::HELP, run: bless::run },
     Command { name: "gallery", about: gallery::ABOUT, help: gallery::HELP, run: gallery::run },
+    Command { name: "book", about: book::ABOUT, help: book::HELP, run: book::run },
     Command { name: "resolution", about: resolution::ABOUT, help: resolution::HELP, run: resolution::run },
     Command { name: "fuzz", about: fuzz::ABOUT, help: fuzz::HELP, run: fuzz::run },
     Command { name: "bench", about: bench::ABOUT, help: bench::HELP, run: bench::run },

@@ -13,6 +13,7 @@ mod values;
 mod bad_places;
 mod bad_recipes;
 mod blocks;
+mod book;
 mod build;
 mod cache;
 mod check;

@@ -1,0 +1,61 @@
+//! The recipes of the tutorial, the cookbook and the pages for engines: each stands on a page and in a file of its own.
+//! `cargo xtask clients book` runs the commands of these pages.
+
+use std::path::{Path, PathBuf};
+
+use crate::harness::Folder;
+
+/// The folders with such pages.
+const FOLDERS: [&str; 3] = ["tutorial", "cookbook", "engines"];
+
+/// The files with an extension in a folder, sorted; none if there is no folder.
+fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let entries = folder.read_dir().into_iter().flatten().map(|entry| entry.unwrap().path());
+    let mut files: Vec<PathBuf> = entries.filter(|file| file.extension().is_some_and(|e| e == extension)).collect();
+    files.sort();
+    files
+}
+
+/// The recipes of a page: names and texts of the blocks that follow a link to a file in `recipes/`.
+fn recipes(page: &str) -> Vec<(&str, &str)> {
+    let blocks = page.match_indices("](recipes/").map(|(at, link)| &page[at + link.len()..]);
+    blocks
+        .filter_map(|rest| {
+            let (name, rest) = rest.split_once(')')?;
+            let (between, rest) = rest.split_once("```toml\n")?;
+            // Other links to the file have no block of their own.
+            (between.trim_matches([':', '.', '\n', ' ']).is_empty()).then_some(())?;
+            Some((name, rest.split_once("```").map(|(recipe, _)| recipe)?))
+        })
+        .collect()
+}
+
+#[test]
+fn recipes_of_pages_are_valid_and_kept_as_files() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
+    let folder = Folder::new();
+    let mut names = Vec::new();
+    for pages in FOLDERS.map(|name| docs.join(name)) {
+        let mut on_pages = Vec::new();
+        for page in files(&pages, "md") {
+            let text = std::fs::read_to_string(&page).unwrap();
+            for (name, recipe) in recipes(&text) {
+                let file = pages.join("recipes").join(name);
+                let kept = std::fs::read_to_string(&file).unwrap_or_default();
+                let advice = "is not the recipe of the page: run `cargo xtask gallery book`";
+                assert!(kept == recipe, "{}: {} {advice}", page.display(), file.display());
+                on_pages.push(file);
+            }
+        }
+        for file in files(&pages.join("recipes"), "toml") {
+            assert!(on_pages.contains(&file), "{} is on no page", file.display());
+            let name = format!("{}-{}", names.len(), file.file_name().unwrap().to_str().unwrap());
+            folder.write(&name, &std::fs::read_to_string(&file).unwrap());
+            names.push(name);
+        }
+    }
+    assert!(names.len() >= 15, "{names:?}");
+    let arguments: Vec<&str> = ["check"].into_iter().chain(names.iter().map(String::as_str)).collect();
+    let told = folder.good(&arguments);
+    assert_eq!(told.text().matches(": valid, ").count(), names.len(), "{}", told.text());
+}
