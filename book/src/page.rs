@@ -19,6 +19,9 @@ const FROM_STUDIO: &str = "../book/";
 /// The folder of the site with files of the repository that are outside of `docs/`.
 const OUTSIDE: &str = "files/";
 
+/// The page whose maps of presets open them in the studio.
+const GALLERY: &str = "docs/gallery.md";
+
 /// What all pages share.
 pub struct Site<'a> {
     /// The root of the repository.
@@ -63,6 +66,10 @@ impl<'a> Site<'a> {
                 Event::Start(Tag::Link { dest_url, .. } | Tag::Image { dest_url, .. }) => {
                     last = dest_url.to_string();
                     let source = &text[range.clone()];
+                    if let (GALLERY, Some(preset)) = (page.file, preset(source)) {
+                        edits.push((range.start..range.start, "[".to_owned()));
+                        edits.push((range.end..range.end, format!("]({STUDIO}?preset={preset})")));
+                    }
                     if self.is_language_link(page, source, &dest_url) {
                         edits.push((range, String::new()));
                         continue;
@@ -101,6 +108,10 @@ impl<'a> Site<'a> {
                         _ => {}
                     }
                     last.clear();
+                }
+                // A browser shows a line's end as a blank, which Chinese does not have between sentences.
+                Event::SoftBreak if page.language.is_unspaced() && !text[range.end..].starts_with(' ') => {
+                    edits.push((range, String::new()));
                 }
                 _ => {}
             }
@@ -173,6 +184,11 @@ struct Page<'a> {
     language: &'a Language,
     file: &'a str,
     address: &'a str,
+}
+
+/// The preset of a picture in the gallery: `![map of NAME](...)`.
+fn preset(picture: &str) -> Option<&str> {
+    picture.strip_prefix("![map of ")?.split(']').next()
 }
 
 /// The address of a file that is no page.

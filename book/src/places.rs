@@ -22,8 +22,17 @@ pub struct Language {
     pub suffix: &'static str,
     /// The text of links that open a recipe in the studio, and of links to the recipe's file.
     pub open: [&'static str; 2],
-    /// The words of mdBook's pages, and what they are in this language.
-    pub words: &'static [(&'static str, &'static str)],
+    /// A script for its search, from the folder of this program.
+    pub search: Option<&'static str>,
+    /// Texts of mdBook's pages, and what they are in this language.
+    pub texts: &'static [(&'static str, &'static str)],
+}
+
+impl Language {
+    /// Whether there are no blanks between words and sentences.
+    pub fn is_unspaced(&self) -> bool {
+        self.tag.starts_with("zh")
+    }
 }
 
 /// The languages; every page is in the first one.
@@ -35,8 +44,10 @@ pub const LANGUAGES: [Language; 2] = [
         summary: "docs/SUMMARY.md",
         folder: "",
         suffix: ".md",
-        open: ["Open in the studio", "the file"],
-        words: &[],
+        open: ["Open in the studio", "Download"],
+        search: None,
+        // The two themes that are shown.
+        texts: &[(">Navy<", ">Dark<")],
     },
     Language {
         tag: "zh-CN",
@@ -45,15 +56,27 @@ pub const LANGUAGES: [Language; 2] = [
         summary: "docs/SUMMARY.zh-CN.md",
         folder: "zh-CN/",
         suffix: ".zh-CN.md",
-        open: ["在工作室中打开", "文件"],
-        words: &[
-            ("Toggle Table of Contents", "目录"),
-            ("Table of contents", "目录"),
-            ("Change theme", "主题"),
-            ("Print this book", "打印全书"),
-            ("Previous chapter", "上一章"),
-            ("Next chapter", "下一章"),
-            ("Keyboard shortcuts", "键盘快捷键"),
+        open: ["在工作室中打开", "下载"],
+        search: Some("theme/search-zh.js"),
+        texts: &[
+            (">Auto<", ">自动<"),
+            (">Light<", ">浅色<"),
+            (">Navy<", ">深色<"),
+            ("\"Toggle Table of Contents\"", "\"目录\""),
+            ("\"Table of contents\"", "\"目录\""),
+            ("\"Themes\"", "\"主题\""),
+            ("\"Change theme\"", "\"主题\""),
+            ("\"Search (`/`)\"", "\"搜索（`/`）\""),
+            ("\"Toggle Searchbar\"", "\"搜索\""),
+            ("\"Search this book ...\"", "\"搜索……\""),
+            ("\"Print this book\"", "\"打印全书\""),
+            ("\"Previous chapter\"", "\"上一章\""),
+            ("\"Next chapter\"", "\"下一章\""),
+            (">Keyboard shortcuts<", ">键盘快捷键<"),
+            (" to navigate between chapters<", " 切换章节<"),
+            (" to search in the book<", " 搜索<"),
+            (" to show this help<", " 显示此帮助<"),
+            (" to hide this help<", " 关闭此帮助<"),
         ],
     },
 ];

@@ -5,26 +5,31 @@ use std::fmt;
 use crate::failure::{Failure, Result};
 use crate::{links, output, shell};
 
-/// Folders with an original and its translation.
-const PAIRS: &[[&str; 3]] = &[["", "README.md", "README.zh-CN.md"], ["docs", "jobs.md", "jobs.zh-CN.md"]];
+/// The end of the name of a translation.
+const SUFFIX: &str = ".zh-CN.md";
+
+/// The pages of the documentation's site, which link to the pages of their language, so they have no common structure.
+const SUMMARY: &str = "docs/SUMMARY.zh-CN.md";
 
 /// The number of lines at the start of a file that must contain the link to the other file.
 const NEAR: usize = 5;
 
-/// Checks every translation.
+/// Checks every translation that git tracks.
 pub fn check() -> Result {
+    let listed = shell::capture(shell::program("git").args(["ls-files", &format!("*{SUFFIX}")]))?;
     let mut found = Vec::new();
-    for [folder, original, translation] in PAIRS {
-        let read = |name: &'static str| Ok(Page { name, text: shell::read(&shell::root().join(folder).join(name))? });
-        let (original, translation) = (read(original)?, read(translation)?);
-        let parts = parts(&original.text, [original.name, translation.name]);
+    for path in listed.lines().filter(|path| *path != SUMMARY) {
+        let Some(stem) = path.strip_suffix(SUFFIX) else { continue };
+        let read = |path: &str| {
+            let name = path.rsplit('/').next().unwrap_or(path).to_owned();
+            Ok(Page { name, text: shell::read(&shell::root().join(path))? })
+        };
+        let (original, translation) = (read(&format!("{stem}.md"))?, read(path)?);
+        let parts = parts(&original.text, [&original.name, &translation.name]);
         let count = |kind| parts.iter().filter(|part| part.kind == kind).count();
         let (headings, code, links) = (count(Kind::Heading), count(Kind::Code), count(Kind::Link));
-        output::line(format_args!(
-            "    {}: {headings} headings, {code} lines of code, {links} links",
-            translation.name
-        ));
-        found.extend(faults(&original, &translation));
+        output::line(format_args!("    {path}: {headings} headings, {code} lines of code, {links} links"));
+        found.extend(faults(&original, &translation).into_iter().map(|fault| format!("{fault} ({path})")));
     }
     match found.is_empty() {
         true => Ok(()),
@@ -33,8 +38,8 @@ pub fn check() -> Result {
 }
 
 /// A Markdown file.
-struct Page<'a> {
-    name: &'a str,
+struct Page {
+    name: String,
     text: String,
 }
 
@@ -87,12 +92,12 @@ impl fmt::Display for Part {
 fn faults(original: &Page, translation: &Page) -> Vec<String> {
     let mut faults = Vec::new();
     for (page, other) in [(original, translation), (translation, original)] {
-        let is_link = |(line, target): &(usize, String)| *line <= NEAR && target == other.name;
+        let is_link = |(line, target): &(usize, String)| *line <= NEAR && *target == other.name;
         if !links::links(&page.text).iter().any(is_link) {
             faults.push(format!("  {}:1: no link to {} in the first {NEAR} lines", page.name, other.name));
         }
     }
-    let names = [original.name, translation.name];
+    let names = [&*original.name, &*translation.name];
     let (left, right) = (parts(&original.text, names), parts(&translation.text, names));
     let last_line = translation.text.lines().count();
     // Each run of parts between two parts that both files have.
@@ -191,7 +196,8 @@ fn parts(text: &str, pair: [&str; 2]) -> Vec<Part> {
     }
     for (line, target) in links::links(text).into_iter().filter(|(_, target)| !pair.contains(&target.as_str())) {
         // Anchors of the file itself are made of its headings.
-        let key = if target.starts_with('#') { "#".to_owned() } else { target.clone() };
+        // A translation links to translations.
+        let key = if target.starts_with('#') { "#".to_owned() } else { target.replace(SUFFIX, ".md") };
         parts.push(Part { line, kind: Kind::Link, key, shown: target });
     }
     parts.sort_by_key(|part| part.line);
@@ -242,7 +248,7 @@ mod tests {
     }
 
     fn found(original: &str, translation: &str) -> Vec<String> {
-        let page = |name, text: &str| Page { name, text: text.to_owned() };
+        let page = |name: &str, text: &str| Page { name: name.to_owned(), text: text.to_owned() };
         faults(&page("a.md", original), &page("b.md", translation))
     }
 
