@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::{Context as _, Result, bail};
 use math_core::{LatexToMathML, MathCoreConfig, MathDisplay};
-use pulldown_cmark::{CodeBlockKind, Event, Options, Parser, Tag, TagEnd};
+use pulldown_cmark::{CodeBlockKind, Event, HeadingLevel, Options, Parser, Tag, TagEnd};
 
 use crate::places::{LANGUAGES, Language, Places, folder, relative, resolved};
 
@@ -21,6 +21,12 @@ const OUTSIDE: &str = "files/";
 
 /// The page whose maps of presets open them in the studio.
 const GALLERY: &str = "docs/gallery.md";
+
+/// The reference of ops, where the picture of an op stands below its name.
+const REFERENCE: &str = "docs/ops.md";
+
+/// The folder of the pictures of ops.
+const OPS: &str = "docs/ops/pictures/";
 
 /// What all pages share.
 pub struct Site<'a> {
@@ -88,6 +94,18 @@ impl<'a> Site<'a> {
                                 edits.push((start..start + target.len(), new));
                             }
                         }
+                    }
+                }
+                Event::End(TagEnd::Heading(HeadingLevel::H3)) if page.file == REFERENCE => {
+                    let op = text[range.clone()].split('`').nth(1).unwrap_or_default();
+                    let picture = format!("{OPS}{op}.jpg");
+                    if self.root.join(&picture).is_file() {
+                        let to = relative(page.address, &asset(&picture));
+                        edits.push((
+                            range.end..range.end,
+                            format!("\n<img class=\"op\" src=\"{to}\" alt=\"{op}\">\n\n"),
+                        ));
+                        self.assets.insert(picture);
                     }
                 }
                 Event::Start(Tag::CodeBlock(CodeBlockKind::Fenced(info))) => {

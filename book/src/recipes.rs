@@ -11,7 +11,7 @@ use crate::places::{LANGUAGES, folder};
 use crate::stage;
 
 /// The folders whose pages are followed step by step: their commands are run, and their recipes kept as files.
-const FOLLOWED: [&str; 3] = ["docs/tutorial/", "docs/cookbook/", "docs/engines/"];
+const FOLLOWED: [&str; 4] = ["docs/tutorial/", "docs/cookbook/", "docs/engines/", "docs/ops/"];
 
 /// The folder of recipes, beside the pages that contain them.
 const RECIPES: &str = "recipes/";

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::harness::Folder;
 
 /// The folders with such pages.
-const FOLDERS: [&str; 3] = ["tutorial", "cookbook", "engines"];
+const FOLDERS: [&str; 4] = ["tutorial", "cookbook", "engines", "ops"];
 
 /// The files with an extension in a folder, sorted; none if there is no folder.
 fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
@@ -58,4 +58,18 @@ fn recipes_of_pages_are_valid_and_kept_as_files() {
     let arguments: Vec<&str> = ["check"].into_iter().chain(names.iter().map(String::as_str)).collect();
     let told = folder.good(&arguments);
     assert_eq!(told.text().matches(": valid, ").count(), names.len(), "{}", told.text());
+}
+
+/// Ops that read files or stand for others, without a picture of their own.
+const WITHOUT_PICTURE: [&str; 5] = ["altitude", "constant", "dem", "image", "input"];
+
+#[test]
+fn every_op_has_a_picture() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
+    let reference = std::fs::read_to_string(docs.join("ops.md")).unwrap();
+    let ops = reference.lines().filter_map(|line| line.strip_prefix("### `")?.strip_suffix('`'));
+    let mut missing: Vec<&str> =
+        ops.filter(|op| !docs.join("ops/pictures").join(format!("{op}.jpg")).is_file()).collect();
+    missing.sort_unstable();
+    assert_eq!(missing, WITHOUT_PICTURE, "add these ops to docs/ops/README.md, then run `cargo xtask gallery book`");
 }
