@@ -22,6 +22,9 @@ const OUTSIDE: &str = "files/";
 /// The page whose maps of presets open them in the studio.
 const GALLERY: &str = "docs/gallery.md";
 
+/// What a recipe has that reads a file, which the studio does not find in a browser.
+const READS_A_FILE: &str = "\npath = ";
+
 /// The reference of ops, where the picture of an op stands below its name.
 const REFERENCE: &str = "docs/ops.md";
 
@@ -121,7 +124,7 @@ impl<'a> Site<'a> {
                     match info.as_str() {
                         "math" => edits.push((range, self.formula(page, &content)?)),
                         "toml" if last.starts_with("recipes/") => {
-                            edits.push((range.end..range.end, self.studio(page, &last)?));
+                            edits.push((range.end..range.end, self.studio(page, &last, &content)?));
                         }
                         _ => {}
                     }
@@ -183,17 +186,17 @@ impl<'a> Site<'a> {
         Ok(format!("<div class=\"formula\">{}</div>\n", mathml.mathml.replace('\n', " ")))
     }
 
-    /// The links below a recipe: to the studio with it, and to its file.
-    fn studio(&mut self, page: &Page, target: &str) -> Result<String> {
+    /// The links below a recipe: to the studio with it, unless it reads files of the reader, and to its file.
+    fn studio(&mut self, page: &Page, target: &str, recipe: &str) -> Result<String> {
         let file = resolved(folder(page.file), target)?;
         let address = asset(&file);
         self.assets.insert(file);
-        let studio = relative(page.address, "index.html").replace("index.html", STUDIO);
         let [open, download] = page.language.open;
+        let studio = relative(page.address, "index.html").replace("index.html", STUDIO);
+        let opened = format!("<a class=\"studio\" href=\"{studio}?open={FROM_STUDIO}{address}\">{open}</a> ");
+        let opened = if recipe.contains(READS_A_FILE) { String::new() } else { opened };
         let to_file = relative(page.address, &address);
-        Ok(format!(
-            "\n<p class=\"recipe\"><a href=\"{studio}?open={FROM_STUDIO}{address}\">{open}</a> <a href=\"{to_file}\" download>{download}</a></p>\n"
-        ))
+        Ok(format!("\n<p class=\"recipe\">{opened}<a href=\"{to_file}\" download>{download}</a></p>\n"))
     }
 }
 

@@ -1,9 +1,10 @@
 //! The recipes of the tutorial, the cookbook and the pages for engines: each stands on a page and in a file of its own.
-//! `cargo xtask clients book` runs the commands of these pages.
+//! `cargo xtask clients book` runs the commands of these pages. Those of all other pages are parsed here.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use crate::harness::Folder;
+use crate::harness::{Folder, words};
 
 /// The folders with such pages.
 const FOLDERS: [&str; 4] = ["tutorial", "cookbook", "engines", "ops"];
@@ -33,7 +34,9 @@ fn recipes(page: &str) -> Vec<(&str, &str)> {
 #[test]
 fn recipes_of_pages_are_valid_and_kept_as_files() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
-    let folder = Folder::new();
+    let folder = Folder::with_small();
+    // The heights that a page makes before its recipe.
+    folder.good(&["export", "small.toml", "-o", "valley.tif"]);
     let mut names = Vec::new();
     for pages in FOLDERS.map(|name| docs.join(name)) {
         let mut on_pages = Vec::new();
@@ -72,4 +75,44 @@ fn every_op_has_a_picture() {
         ops.filter(|op| !docs.join("ops/pictures").join(format!("{op}.jpg")).is_file()).collect();
     missing.sort_unstable();
     assert_eq!(missing, WITHOUT_PICTURE, "add these ops to docs/ops/README.md, then run `cargo xtask gallery book`");
+}
+
+/// The command lines of a page: those in indented blocks, with continued lines joined, without comments.
+fn commands(page: &str) -> Vec<String> {
+    let joined = page.replace("\\\n", " ");
+    let (mut commands, mut is_fenced) = (Vec::new(), false);
+    for line in joined.lines() {
+        is_fenced ^= line.starts_with("```");
+        if let (false, Some(command)) = (is_fenced, line.strip_prefix("    orogen ")) {
+            commands.push(command.split(" #").next().unwrap_or_default().trim().to_owned());
+        }
+    }
+    commands
+}
+
+#[test]
+fn every_command_of_the_docs_is_one() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let folders = ["docs"].into_iter().map(str::to_owned).chain(FOLDERS.map(|folder| format!("docs/{folder}")));
+    let pages = folders.flat_map(|folder| files(&root.join(folder), "md")).chain([root.join("README.md")]);
+    let mut found = BTreeMap::new();
+    for page in pages {
+        for command in commands(&std::fs::read_to_string(&page).unwrap()) {
+            found.entry(command).or_insert_with(|| page.clone());
+        }
+    }
+    assert!(found.len() > 300, "{} commands", found.len());
+    let folder = Folder::new();
+    for (command, page) in &found {
+        // The shell would replace the variable of a cluster.
+        let mut arguments = words(&command.replace("$SLURM_ARRAY_TASK_ID", "1"));
+        // All that is before it has been parsed when it is found.
+        arguments.push("--help".to_owned());
+        let outcome = folder.run(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+        // Commands of optional features are those of other builds.
+        if outcome.err.contains("this program was built without") {
+            continue;
+        }
+        assert_eq!(outcome.code, 0, "{}: orogen {command}: {}", page.display(), outcome.err);
+    }
 }

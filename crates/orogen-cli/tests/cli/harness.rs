@@ -299,3 +299,13 @@ pub fn is_whole(path: &Path) -> bool {
         _ => !bytes.is_empty(),
     }
 }
+
+/// The arguments of a command line; those in double quotes may contain spaces.
+pub fn words(line: &str) -> Vec<String> {
+    let quoted = line.split('"').enumerate();
+    let pieces = quoted.flat_map(|(n, text)| match n % 2 {
+        0 => text.split_whitespace().map(str::to_owned).collect(),
+        _ => vec![text.to_owned()],
+    });
+    pieces.collect()
+}

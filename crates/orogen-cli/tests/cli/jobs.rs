@@ -1,6 +1,6 @@
 //! The jobs of docs/jobs.md, done with the commands given there.
 
-use crate::harness::Folder;
+use crate::harness::{Folder, words};
 
 const PAGE: &str = include_str!("../../../../docs/jobs.md");
 
@@ -53,14 +53,4 @@ fn do_job(title: &str) {
         done += 1;
     }
     assert!(done >= 3, "{title}: {done} commands");
-}
-
-/// The arguments of a command line; those in double quotes may contain spaces.
-fn words(line: &str) -> Vec<String> {
-    let quoted = line.split('"').enumerate();
-    let pieces = quoted.flat_map(|(n, text)| match n % 2 {
-        0 => text.split_whitespace().map(str::to_owned).collect(),
-        _ => vec![text.to_owned()],
-    });
-    pieces.collect()
 }
