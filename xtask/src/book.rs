@@ -19,6 +19,10 @@ browsers if that stands beside them, in target/web/studio.
 The first run compiles mdBook into target/book.
 ";
 
+/// The licence of the icons that mdBook puts into pages, those of Font Awesome Free: they are to be credited, as
+/// docs/development.md does.
+const ICONS: &[&str] = &["CC-BY-4.0"];
+
 /// Makes the site.
 pub fn run(args: &[String]) -> Result {
     let out = match args {
@@ -40,7 +44,7 @@ pub fn check() -> Result {
     shell::run(&mut shell::cargo("fmt --manifest-path book/Cargo.toml --check"))?;
     let mut tests = shell::cargo("test --quiet --locked --manifest-path book/Cargo.toml --target-dir");
     shell::run(tests.arg(target_dir().join("book")))?;
-    licences::check_of(Some(&root().join("book/Cargo.toml")))
+    licences::check_of(Some(&root().join("book/Cargo.toml")), ICONS)
 }
 
 /// Runs the commands and scripts of the pages, and compares the pictures with what they draw. `bin` has the Python that

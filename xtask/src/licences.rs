@@ -32,11 +32,11 @@ const ACCEPTED: &[&str] = &[
 
 /// Checks every package that this workspace may be built with, optional ones included.
 pub fn check() -> Result {
-    check_of(None)
+    check_of(None, &[])
 }
 
-/// Checks the packages of another workspace, or of this one.
-pub fn check_of(manifest: Option<&Path>) -> Result {
+/// Checks the packages of another workspace, which may have more licences, or of this one.
+pub fn check_of(manifest: Option<&Path>, more: &[&str]) -> Result {
     let mut metadata = shell::cargo("metadata --all-features --format-version 1");
     metadata.args(manifest.iter().flat_map(|manifest| ["--manifest-path".as_ref(), manifest.as_os_str()]));
     let text = shell::capture(&mut metadata)?;
@@ -48,7 +48,7 @@ pub fn check_of(manifest: Option<&Path>) -> Result {
         .filter_map(|package| {
             let licence = package["license"].as_str().unwrap_or("");
             let name = format!("{} {}", package["name"].as_str()?, package["version"].as_str()?);
-            (!accepted(licence)).then(|| format!("  {name}: '{licence}'"))
+            (!accepted(licence, more)).then(|| format!("  {name}: '{licence}'"))
         })
         .collect();
     if packages.is_empty() || !refused.is_empty() {
@@ -59,32 +59,32 @@ pub fn check_of(manifest: Option<&Path>) -> Result {
 }
 
 /// Whether an SPDX expression can be satisfied with accepted licences. `/` is the old form of OR; AND binds tighter.
-fn accepted(expression: &str) -> bool {
+fn accepted(expression: &str, more: &[&str]) -> bool {
     let spaced = expression.replace('(', " ( ").replace(')', " ) ").replace('/', " OR ");
     let words: Vec<&str> = spaced.split_whitespace().collect();
     let mut rest = words.as_slice();
-    either(&mut rest) && rest.is_empty()
+    either(&mut rest, more) && rest.is_empty()
 }
 
-fn either(rest: &mut &[&str]) -> bool {
-    let mut any = both(rest);
+fn either(rest: &mut &[&str], more: &[&str]) -> bool {
+    let mut any = both(rest, more);
     while take(rest, "OR") {
-        any |= both(rest);
+        any |= both(rest, more);
     }
     any
 }
 
-fn both(rest: &mut &[&str]) -> bool {
-    let mut all = one(rest);
+fn both(rest: &mut &[&str], more: &[&str]) -> bool {
+    let mut all = one(rest, more);
     while take(rest, "AND") {
-        all &= one(rest);
+        all &= one(rest, more);
     }
     all
 }
 
-fn one(rest: &mut &[&str]) -> bool {
+fn one(rest: &mut &[&str], more: &[&str]) -> bool {
     if take(rest, "(") {
-        let inner = either(rest);
+        let inner = either(rest, more);
         return take(rest, ")") && inner;
     }
     let Some((&name, after)) = rest.split_first() else { return false };
@@ -93,7 +93,7 @@ fn one(rest: &mut &[&str]) -> bool {
         // An exception only grants more rights.
         *rest = rest.get(1..).unwrap_or_default();
     }
-    ACCEPTED.contains(&name)
+    ACCEPTED.contains(&name) || more.contains(&name)
 }
 
 fn take(rest: &mut &[&str], word: &str) -> bool {
@@ -124,7 +124,8 @@ mod tests {
             ("MIT Apache-2.0", false),
             ("", false),
         ] {
-            assert_eq!(accepted(expression), expect, "{expression}");
+            assert_eq!(accepted(expression, &[]), expect, "{expression}");
         }
+        assert!(accepted("CC-BY-4.0 AND MIT", &["CC-BY-4.0"]) && !accepted("CC-BY-4.0 AND MIT", &[]));
     }
 }
