@@ -77,6 +77,12 @@ fn every_op_has_a_picture() {
     assert_eq!(missing, WITHOUT_PICTURE, "add these ops to docs/ops/README.md, then run `cargo xtask gallery book`");
 }
 
+/// The commands within the sentences of a page.
+fn inline_commands(page: &str) -> Vec<String> {
+    let parts = page.split('`').skip(1).step_by(2);
+    parts.filter_map(|code| code.strip_prefix("orogen ")).map(str::to_owned).collect()
+}
+
 /// The command lines of a page: those in indented blocks, with continued lines joined, without comments.
 fn commands(page: &str) -> Vec<String> {
     let joined = page.replace("\\\n", " ");
@@ -97,7 +103,11 @@ fn every_command_of_the_docs_is_one() {
     let pages = folders.flat_map(|folder| files(&root.join(folder), "md")).chain([root.join("README.md")]);
     let mut found = BTreeMap::new();
     for page in pages {
-        for command in commands(&std::fs::read_to_string(&page).unwrap()) {
+        let text = std::fs::read_to_string(&page).unwrap();
+        // In the reference, inline commands have placeholders.
+        let is_followed = FOLDERS.iter().any(|folder| page.parent().is_some_and(|parent| parent.ends_with(folder)));
+        let inline = if is_followed { inline_commands(&text) } else { Vec::new() };
+        for command in commands(&text).into_iter().chain(inline) {
             found.entry(command).or_insert_with(|| page.clone());
         }
     }
