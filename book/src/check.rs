@@ -21,7 +21,7 @@ const ATTRIBUTES: [&str; 2] = [" href=\"", " src=\""];
 pub fn site(out: &Path) -> Result<Count> {
     let mut files = BTreeSet::new();
     list(out, "", &mut files)?;
-    let pages: Vec<&String> = files.iter().filter(|file| file.ends_with(".html") && !is_copy(file)).collect();
+    let pages: Vec<&String> = files.iter().filter(|file| file.ends_with(".html") && !has_no_place(file)).collect();
     ensure!(pages.len() > 20, "{} has only {} pages", out.display(), pages.len());
     for folder in ["", "zh-CN/"] {
         let starts = format!("{folder}searchindex-");
@@ -55,9 +55,9 @@ pub fn site(out: &Path) -> Result<Count> {
     }
 }
 
-/// Whether a page is a copy of others: all chapters on one page, whose links are those of the chapters.
-fn is_copy(page: &str) -> bool {
-    page.ends_with("print.html") || page.ends_with("404.html")
+/// Whether a page is one that a server shows for addresses without a page, wherever they are: its links have no place.
+fn has_no_place(page: &str) -> bool {
+    page.ends_with("404.html")
 }
 
 /// Checks a link of a page.
