@@ -21,9 +21,10 @@ const BASES: &str = "crates/orogen-noise/src/basis.rs";
 const BASIS: &str = include_str!("../templates/basis.txt");
 
 /// The messages of the check of the lists about missing things afterwards.
-const MISSING: [&str; 9] = [
+const MISSING: [&str; 10] = [
     "crates/orogen-noise/tests/goldens.txt does not have `added-noise`: run `cargo xtask bless golden`",
     "golden/ops.txt does not have `added-filter`: run `cargo xtask bless golden`",
+    "docs/ops/README.md does not have `added-filter`: add its node, command and picture, and run `cargo xtask gallery book`",
     "docs/formats.md or docs/meshes.md or docs/water.md does not have `added`: add a row that describes it",
     "golden/presets.txt does not have `added-preset`: run `cargo xtask bless golden`",
     "docs/images/added-preset.png is missing: run `cargo xtask gallery added-preset`",

@@ -19,7 +19,14 @@ const BLESS: &str = "run `cargo xtask bless golden`";
 const GALLERY: &str = "run `cargo xtask gallery NAME`";
 
 /// Files of an op.
-pub const OP: &[Required] = &[Required { files: &["golden/ops.txt"], texts: &["\nNAME ", "\nNAME."], how: BLESS }];
+pub const OP: &[Required] = &[
+    Required { files: &["golden/ops.txt"], texts: &["\nNAME ", "\nNAME."], how: BLESS },
+    Required {
+        files: &["docs/ops/README.md"],
+        texts: &["`NAME`"],
+        how: "add its node, command and picture, and run `cargo xtask gallery book`",
+    },
+];
 
 /// Files of a noise basis.
 pub const BASIS: &[Required] =
