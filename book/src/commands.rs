@@ -70,7 +70,8 @@ fn follow(root: &Path, orogen: &Path, folder: &Path, kept: Pictures, page: &str)
             Part::Picture(_) => {}
         }
     }
-    for part in &parts {
+    // A page without commands shows the pictures of others.
+    for part in parts.iter().filter(|_| count > 0) {
         let Part::Picture(name) = part else { continue };
         let bytes = pictures::encoded(&drawn(folder, name))?;
         let to = picture(root, page, name);
