@@ -47,21 +47,35 @@ pub fn check() -> Result {
     licences::check_of(Some(&root().join("book/Cargo.toml")), ICONS)
 }
 
-/// Runs the commands and scripts of the pages, and compares the pictures with what they draw. `bin` has the Python that
-/// runs scripts, and `packages` its packages.
-pub fn follow(orogen: &Path, work: &Path, bin: Option<&Path>, packages: &Path) -> Result {
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let path = bin.map(Path::to_path_buf).into_iter().chain(std::env::split_paths(&path));
-    let path = std::env::join_paths(path).map_err(|error| Failure::new(format!("the search path: {error}")))?;
-    let mut command = program();
-    command.env("PATH", path).env("PYTHONPATH", packages);
-    shell::run(command.arg("commands").arg(root()).arg(orogen).arg(work))
+/// What runs the commands and scripts of the pages.
+pub struct Programs {
+    /// `orogen`.
+    pub orogen: PathBuf,
+    /// The folder of the Python that runs scripts.
+    pub bin: PathBuf,
+    /// The folder of its packages.
+    pub packages: PathBuf,
+}
+
+/// Runs the commands and scripts of the pages in a folder, and compares the pictures with what they draw.
+pub fn follow(programs: &Programs, work: &Path) -> Result {
+    shell::run(&mut commands(programs, work)?)
 }
 
 /// Writes the recipes that the pages contain as files, and the pictures that their commands draw.
-pub fn write(orogen: &Path, work: &Path) -> Result {
+pub fn write(programs: &Programs, work: &Path) -> Result {
     shell::run(program().arg("recipes").arg(root()))?;
-    shell::run(program().arg("commands").arg(root()).arg(orogen).arg(work).arg("--write"))
+    shell::run(commands(programs, work)?.arg("--write"))
+}
+
+fn commands(programs: &Programs, work: &Path) -> Result<Command> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::env::join_paths(std::iter::once(programs.bin.clone()).chain(std::env::split_paths(&path)));
+    let path = path.map_err(|error| Failure::new(format!("the search path: {error}")))?;
+    let mut command = program();
+    command.env("PATH", path).env("PYTHONPATH", &programs.packages);
+    command.arg("commands").arg(root()).arg(&programs.orogen).arg(work);
+    Ok(command)
 }
 
 /// The program that makes the site.

@@ -5,7 +5,7 @@
 
 mod asan;
 mod blender;
-mod book;
+pub mod book;
 mod gpu;
 mod install;
 mod neon;

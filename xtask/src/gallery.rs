@@ -1,7 +1,7 @@
 //! `cargo xtask gallery`: makes the pictures of the README and the docs with `orogen` itself.
 
 use crate::failure::{Failure, Result, on_file};
-use crate::{book, codegen, shell};
+use crate::{book, clients, codegen, shell};
 
 mod base64;
 mod blocks;
@@ -25,7 +25,8 @@ crates/orogen-noise/docs/gallery.md: the pictures at the top of the documentatio
 file, so that every renderer shows them.
 
   PRESET  make the pictures of this preset alone, and docs/gallery.md
-  book    write the recipes and the pictures of the tutorial, the cookbook and the pages for engines, from the pages' own commands
+  book    write the recipes and the pictures of the tutorial, the cookbook and the pages for engines and ops from the pages'
+          own commands; `cargo xtask clients book`, which may fail before, leaves the Python that runs their scripts
   studio  take the pictures of jobs in the studio that the last `cargo xtask clients studio` left
 ";
 
@@ -85,7 +86,10 @@ pub fn run(args: &[String]) -> Result {
 
 /// The recipes and pictures of the pages whose commands are run.
 fn book_pictures() -> Result {
+    let programs = clients::book::programs();
+    if !programs.packages.is_dir() {
+        return Err(Failure::new("the scripts of the pages need Python; run `cargo xtask clients book` first"));
+    }
     shell::run(&mut shell::cargo("build --quiet --release --package orogen-cli"))?;
-    let orogen = shell::target_dir().join("release").join(format!("orogen{}", std::env::consts::EXE_SUFFIX));
-    book::write(&orogen, &shell::target_dir().join("gallery/book"))
+    book::write(&programs, &shell::target_dir().join("gallery/book"))
 }
