@@ -30,7 +30,12 @@ struct Case {
     measure: fn(&Options) -> Result<f64, String>,
 }
 
-const fn case(name: &'static str, unit: &'static str, target: f64, measure: fn(&Options) -> Result<f64, String>) -> Case {
+const fn case(
+    name: &'static str,
+    unit: &'static str,
+    target: f64,
+    measure: fn(&Options) -> Result<f64, String>,
+) -> Case {
     Case { name, unit, target, is_rate: false, is_long: false, measure }
 }
 
@@ -94,7 +99,14 @@ fn warmed() -> Result<(Server, Vec<String>), String> {
 /// Runs a function on several threads, and collects what they return.
 fn together<T: Send>(count: usize, work: impl Fn(usize) -> Result<T, String> + Sync) -> Result<Vec<T>, String> {
     std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..count).map(|k| scope.spawn({ let work = &work; move || work(k) })).collect();
+        let threads: Vec<_> = (0..count)
+            .map(|k| {
+                scope.spawn({
+                    let work = &work;
+                    move || work(k)
+                })
+            })
+            .collect();
         threads.into_iter().map(|thread| thread.join().map_err(|_| "a client ended".to_string())?).collect()
     })
 }

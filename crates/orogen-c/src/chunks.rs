@@ -147,7 +147,7 @@ pub unsafe extern "C" fn orogen_chunks_done(chunks: *mut OrogenChunks, chunk: Or
     })
 }
 
-/// Says that a chunk that was taken could not be made; it may be taken again.
+/// Says that a chunk that was taken could not be made; it is taken again after all others.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn orogen_chunks_forget(chunks: *mut OrogenChunks, chunk: OrogenChunk) -> OrogenStatus {
     guarded(|| {

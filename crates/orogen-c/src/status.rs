@@ -9,6 +9,7 @@ use engine::{Error, ErrorKind, Result};
 /// The result of a call.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(non_camel_case_types, reason = "the names in C")]
 pub enum OrogenStatus {
     /// The call did what it says.
     OROGEN_OK = 0,

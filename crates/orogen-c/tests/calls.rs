@@ -103,8 +103,15 @@ fn chunks_cover_the_ground_around_a_viewer() {
         assert_eq!(orogen_chunks_take(chunks, &raw mut chunk, &raw mut has), OrogenStatus::OROGEN_OK);
         let first = chunk;
         assert_eq!(orogen_chunks_forget(chunks, chunk), OrogenStatus::OROGEN_OK);
-        assert_eq!(orogen_chunks_take(chunks, &raw mut chunk, &raw mut has), OrogenStatus::OROGEN_OK);
-        assert!(has && chunk == first, "a chunk that was forgotten is to be made again");
+        let mut last = chunk;
+        loop {
+            assert_eq!(orogen_chunks_take(chunks, &raw mut chunk, &raw mut has), OrogenStatus::OROGEN_OK);
+            if !has {
+                break;
+            }
+            last = chunk;
+        }
+        assert_eq!(last, first, "a chunk that was forgotten comes after all others");
         assert_eq!(orogen_chunks_evict(chunks, &raw mut chunk, &raw mut has), OrogenStatus::OROGEN_OK);
         orogen_chunks_free(chunks);
         lod.cells = 7;
