@@ -78,6 +78,7 @@ startReadout(map, world);
 startParameters();
 onChange((names) => {
   get("link").value = location.href;
+  if (names.some((name) => ["seed", "set"].includes(name))) describe();
   if (names.some((name) => ["layer", "palette", "seed", "set"].includes(name))) recolor();
   else redraw();
 });
@@ -109,6 +110,15 @@ function describe() {
   get("addresses").href = address("addresses");
   get("worlds").hidden = document.documentElement.dataset.root === "";
   get("worlds").href = new URL(`../${new URL(address("")).search}`, address("")).href.replace(/[?&](seed|set)=[^&]*/g, "");
+  const root = new URL(document.documentElement.dataset.root || "./", address("").split("?")[0]);
+  get("studio").hidden = !world.has_studio;
+  get("book").hidden = !world.has_book;
+  get("book").href = new URL(language === "en" ? "book/" : "book/zh-CN/", root).href;
+  // The studio opens the recipe with the seed and the numbers of now.
+  const studio = new URL("studio/", root);
+  studio.searchParams.set("open", address("recipe.toml"));
+  studio.searchParams.set("lang", language);
+  get("studio").href = studio.href;
   get("language").textContent = language === "en" ? "中文" : "English";
   get("language").lang = other();
   const keys = [["+ −", "keys-zoom"], ["← ↑ → ↓", "keys-move"], ["Shift + ← →", "keys-turn"], ["Shift + ↑ ↓", "keys-tilt"], ["/", "keys-search"], ["P", "keys-profile"], ["M", "keys-panel"]];

@@ -41,6 +41,7 @@ mod routes;
 mod served;
 mod server;
 mod shared;
+mod site;
 mod tiles;
 mod variants;
 mod vector;

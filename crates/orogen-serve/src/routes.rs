@@ -14,7 +14,7 @@ use axum::routing::get;
 use crate::call::{Call, route};
 use crate::refusal::Refusal;
 use crate::shared::{Client, Shared};
-use crate::{answer, colors, describe, meshes, objects, page, places, points, tiles, vector, windows, zarr};
+use crate::{answer, colors, describe, meshes, objects, page, places, points, site, tiles, vector, windows, zarr};
 
 /// First parts of paths that no world can have as its name.
 pub const RESERVED: [&str; 24] = [
@@ -65,6 +65,7 @@ pub fn router(shared: &Arc<Shared>) -> Router {
             .route(&format!("{prefix}/vector/{{z}}/{{x}}/{{y}}"), route(vector::tile))
             .route(&format!("{prefix}/tilejson/{{layer}}"), route(describe::tilejson::tilejson))
             .route(&format!("{prefix}/recipe.json"), route(describe::recipe::recipe))
+            .route(&format!("{prefix}/recipe.toml"), route(describe::recipe::text))
             .route(&format!("{prefix}/wmts"), route(describe::wmts::capabilities))
             .route(&format!("{prefix}/wmts/1.0.0/WMTSCapabilities.xml"), route(describe::wmts::capabilities))
             .route(&format!("{prefix}/colors/{{layer}}"), route(colors::colors))
@@ -84,6 +85,12 @@ pub fn router(shared: &Arc<Shared>) -> Router {
     }
     for asset in &page::ASSETS {
         router = router.route(&format!("/assets/{}", asset.name), route(async |call| page::asset(&call, asset)));
+    }
+    for part in site::PARTS {
+        router = router
+            .route(&format!("/{part}"), get(async move || site::folder(part)))
+            .route(&format!("/{part}/"), route(move |call| site::file(call, part)))
+            .route(&format!("/{part}/{{*path}}"), route(move |call| site::file(call, part)));
     }
     router
         .fallback(async || Refusal::absent("there is no such request; / and /openapi.json list all of them"))
@@ -147,8 +154,9 @@ async fn around(State(shared): State<Arc<Shared>>, request: Request, next: Next)
         shared: &shared,
     };
     let is_asked = request.method() == Method::OPTIONS;
-    // Scripts of the page are no secret.
-    let is_open = |path: &str| path == HEALTH || path.starts_with("/assets/");
+    // Pages that are the same everywhere are no secret.
+    let is_open =
+        |path: &str| path == HEALTH || ["/assets/", "/studio/", "/book/"].iter().any(|start| path.starts_with(start));
     let is_allowed = is_asked || is_open(request.uri().path()) || is_allowed(&shared, &request);
     let mut response = match (is_asked, is_allowed) {
         (true, _) => asked(),

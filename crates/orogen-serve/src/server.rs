@@ -16,6 +16,7 @@ use crate::metrics::Metrics;
 use crate::routes::{RESERVED, router};
 use crate::served::Served;
 use crate::shared::{GRACE, Limits, Log, Shared};
+use crate::site::Site;
 
 const OPTIONS: &[OptionSpec] = &[
     OptionSpec::new("port", "N", ValueKind::Whole(0, 65_535))
@@ -36,6 +37,8 @@ const OPTIONS: &[OptionSpec] = &[
     OptionSpec::new("timeout", "S", ValueKind::Number(0.1, 86_400.0))
         .with_about("Seconds that an answer may take; then it is 503, and its work is cancelled unless others wait for it")
         .with_default("120"),
+    OptionSpec::new("web", "FOLDER", ValueKind::File)
+        .with_about("Folder that `cargo xtask web` and `cargo xtask book` make: the studio at /studio/, the book at /book/"),
 ];
 
 /// Shortest token.
@@ -55,6 +58,7 @@ const SPEAKERS: usize = 2;
 pub struct Server {
     session: Session,
     limits: Limits,
+    site: Site,
     host: String,
     port: u16,
     worlds: Vec<Arc<Served>>,
@@ -94,7 +98,8 @@ impl Server {
             queue: options.whole("queue").unwrap_or(256) as usize,
         };
         let port = options.whole("port").unwrap_or(8080) as u16;
-        Ok(Server { session, limits, host, port, worlds: Vec::new(), listener: None })
+        let site = options.file("web").map(Site::of).transpose()?.unwrap_or_default();
+        Ok(Server { session, limits, site, host, port, worlds: Vec::new(), listener: None })
     }
 
     /// Adds a world under a name, which begins the paths of its requests if there are several worlds. `is_place`: it is
@@ -191,6 +196,7 @@ impl Server {
             worlds: self.worlds,
             desk: Arc::new(Desk::new(self.session.threads(), self.limits.queue, cache as usize)),
             limits: self.limits,
+            site: self.site,
             metrics: Metrics::default(),
             log,
             session: self.session,

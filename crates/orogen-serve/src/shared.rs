@@ -9,6 +9,7 @@ use orogen::Session;
 use crate::desk::Desk;
 use crate::metrics::Metrics;
 use crate::served::Served;
+use crate::site::Site;
 
 /// How long running answers may take to end when the server stops.
 pub const GRACE: Duration = Duration::from_secs(10);
@@ -30,6 +31,7 @@ pub struct Shared {
     pub worlds: Vec<Arc<Served>>,
     pub desk: Arc<Desk>,
     pub limits: Limits,
+    pub site: Site,
     pub metrics: Metrics,
     pub log: Log,
     pub session: Session,

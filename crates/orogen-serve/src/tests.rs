@@ -6,6 +6,7 @@ mod descriptions;
 mod meshes;
 mod page;
 mod samples;
+mod site;
 mod variants;
 mod vector;
 mod vector_reader;

@@ -30,6 +30,13 @@ pub async fn recipe(call: Call) -> Result<Response, Refusal> {
     answer::text(&call.headers, "application/json", &text.to_string(), call.is_private())
 }
 
+/// `/recipe.toml`: the recipe itself, or the variant that the parameters ask for.
+pub async fn text(call: Call) -> Result<Response, Refusal> {
+    call.query.only_of_variants(&[])?;
+    let served = call.served()?;
+    answer::text(&call.headers, "application/toml", &served.recipe().to_toml(), call.is_private())
+}
+
 /// A range in JSON, which has no infinite numbers.
 fn range(range: [f64; 2]) -> Value {
     json!(range.map(|bound| bound.is_finite().then_some(bound)))

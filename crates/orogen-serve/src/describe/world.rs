@@ -60,6 +60,8 @@ pub async fn world(call: Call) -> Result<Response, Refusal> {
         "palettes": palettes,
         "formats": formats,
         "find": find,
+        "has_studio": call.shared.site.has("studio") && !served.is_place,
+        "has_book": call.shared.site.has("book"),
         "max_samples": call.shared.limits.samples,
         "orogen": env!("CARGO_PKG_VERSION"),
     });
