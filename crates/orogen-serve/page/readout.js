@@ -44,6 +44,10 @@ async function show(world, position, isMiddle) {
   const mine = asked = new AbortController();
   const [x, y] = toWorld(position);
   const place = `${t("east")} ${number(x, 1)}  ${t("north")} ${number(y, 1)}`;
+  if (!isInside(world.web.bounds, position)) {
+    here.textContent = `${place}   ${t("outside")}`;
+    return;
+  }
   const layers = [...new Set([world.has_heights ? "height" : state.layer, state.layer])];
   // The pointer rests before anything is asked.
   await new Promise((wait) => setTimeout(wait, 40));
@@ -60,6 +64,11 @@ async function show(world, position, isMiddle) {
       complain(error);
     }
   }
+}
+
+/** Whether a position is in the world. */
+function isInside(bounds, { lng, lat }) {
+  return !bounds || (lng >= bounds[0] && lat >= bounds[1] && lng <= bounds[2] && lat <= bounds[3]);
 }
 
 /** The value of a layer; nothing outside the world, and for layers of several numbers. */
