@@ -1,5 +1,6 @@
 //! File system access. With the feature `fs` this is `std::fs`, extended by objects of a store such as S3.
-//! Without it the module has the same items, but each fails with [`std::io::ErrorKind::Unsupported`].
+//! Without it the module has the same items, but each fails with [`std::io::ErrorKind::Unsupported`]. On WebAssembly
+//! without an operating system, files are in [memory].
 //!
 //! All libraries of Orogen access files through this module. A host without a file system can therefore run everything
 //! that needs no files, and gets an error that states the reason for everything else.
@@ -8,16 +9,21 @@ use std::path::{Path, PathBuf};
 
 #[cfg(not(feature = "fs"))]
 mod absent;
-#[cfg(feature = "fs")]
+#[cfg(all(feature = "fs", any(test, target_os = "unknown")))]
+#[doc(hidden)]
+pub mod memory;
+#[cfg(all(feature = "fs", not(target_os = "unknown")))]
 pub mod objects;
-#[cfg(feature = "fs")]
+#[cfg(all(feature = "fs", not(target_os = "unknown")))]
 mod present;
 
 #[cfg(not(feature = "fs"))]
 pub use absent::*;
-#[cfg(feature = "fs")]
+#[cfg(all(feature = "fs", target_os = "unknown"))]
+pub use memory::*;
+#[cfg(all(feature = "fs", not(target_os = "unknown")))]
 pub use objects::{is_read_only, is_remote};
-#[cfg(feature = "fs")]
+#[cfg(all(feature = "fs", not(target_os = "unknown")))]
 pub use present::*;
 
 /// Whether this build has a file system (the feature `fs`).
@@ -45,13 +51,19 @@ pub fn is_present(path: &Path) -> bool {
     metadata(path).is_ok()
 }
 
-/// The system's temporary folder; an empty path on a host without files.
+/// The system's temporary folder; an empty path on a host without files, and for files in memory.
 #[must_use]
 pub fn temporary_folder() -> PathBuf {
-    match AVAILABLE && !cfg!(all(target_family = "wasm", not(target_os = "wasi"))) {
+    match AVAILABLE && !cfg!(target_os = "unknown") {
         true => std::env::temp_dir(),
         false => PathBuf::new(),
     }
+}
+
+/// The number of this process; 0 on a host without processes.
+#[must_use]
+pub fn process() -> u32 {
+    if cfg!(target_os = "unknown") { 0 } else { std::process::id() }
 }
 
 /// Whether the name is in use, even by a dangling link.

@@ -128,7 +128,7 @@ impl FolderLock {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         for _ in 0..NAMES {
             let count = COUNT.fetch_add(1, Ordering::Relaxed);
-            let stem = format!("{PREFIX}{}-{count}", std::process::id());
+            let stem = format!("{PREFIX}{}-{count}", fs::process());
             let path = folder.join(format!("{stem}{LOCK}"));
             let file = match OpenOptions::new().write(true).create_new(true).open(&path) {
                 Ok(file) => file,
