@@ -124,7 +124,7 @@ fn pictures(worker: &mut Worker, request: Request) -> Result<[f64; 2], String> {
                     }
                 }
                 Event::Failed(error) => return Err(error.to_string()),
-                Event::Done => {}
+                Event::Next(_) | Event::Done => {}
             }
         }
         std::thread::sleep(Duration::from_micros(200));

@@ -17,6 +17,7 @@ pub mod studio;
 mod wasm;
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::sync::OnceLock;
 
 use crate::failure::{Failure, Result};
@@ -61,6 +62,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step of
   taplo     taplo validates every recipe against the JSON Schema, and rejects broken ones
   python    the Python package in a new environment: its tests, its types, its generated files
   book      the documentation as a site: every link leads somewhere; the commands and scripts of tutorial, cookbook and engines draw its pictures
+  web       the studio as a page in Chromium: its land, changes, both languages, files; exports have the bytes of the command line
   studio    the studio's tests with Mesa's software Vulkan, and its window under Xvfb in both languages: eleven jobs by mouse and keyboard
   gpu       fields, filters, presets and pictures on a graphics card, or Mesa's software Vulkan, beside the processor's; and without any card
 
@@ -242,6 +244,17 @@ const CLIENTS: &[Client] = &[
         pip: &[NUMPY, RASTERIO, "azure-storage-blob==12.31.1"],
         npm: &["azurite@3.35.0"],
     },
+    Client {
+        name: "web",
+        apt: &[
+            ("node", "nodejs"),
+            ("npm", "npm"),
+            ("chromium", "chromium"),
+            ("/usr/share/fonts/truetype/wqy/wqy-microhei.ttc", "fonts-wqy-microhei"),
+        ],
+        pip: &[NUMPY, PILLOW],
+        npm: &["playwright-core@1.65.1"],
+    },
     Client { name: "wheel", apt: &[], pip: &["maturin==1.16.0"], npm: &[] },
     Client { name: "nogil", apt: &[], pip: &["maturin==1.16.0"], npm: &[] },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
@@ -326,6 +339,7 @@ const STEPS: &[&Step] = &[
     &beside("formats", "OpenEXR, GDAL, rasterio, Pillow and Godot read exports", || script("formats")),
     &beside("relief", "gdaldem computes the same hillshade, slope and aspect", || script("relief")),
     &beside("taplo", "taplo checks the recipes against the schema", || script("taplo")),
+    &alone("web", "the studio as a page, in Chromium", web),
     &alone("studio", "the studio with software Vulkan, and its window under Xvfb", studio::check),
     &alone("gpu", "terrain and pictures on a graphics card, beside the processor's", gpu::check),
 ];
@@ -370,7 +384,7 @@ pub fn run(args: &[String]) -> Result {
     let mut steps = STEPS.to_vec();
     if is_all || !named.is_empty() {
         // Before the steps that run alone, so that all steps that run in parallel are neighbors.
-        let at = steps.iter().position(|step| step.name == "studio").unwrap_or(steps.len());
+        let at = steps.iter().position(|step| step.name == "web").unwrap_or(steps.len());
         steps.splice(at..at, ON_REQUEST.iter().copied());
     }
     if !named.is_empty() {
@@ -406,6 +420,18 @@ fn orogen() -> PathBuf {
     target_dir().join("release").join(format!("orogen{}", std::env::consts::EXE_SUFFIX))
 }
 
+/// Installs the standard library for WebAssembly.
+pub fn install_wasm() -> Result {
+    wasm::install()
+}
+
+/// Builds the studio as a page, and uses it in a browser.
+fn web() -> Result {
+    let page = crate::web::build(&folder().join("web"), crate::web::Profile::Quick)?;
+    let work = empty_work("web")?;
+    sh(python_script(&install::python(), "web", "web", &work).env("OROGEN_WEB", page))
+}
+
 /// Runs a client's script in a new folder.
 fn script(name: &str) -> Result {
     script_for(name, name)
@@ -424,17 +450,28 @@ fn script_for(client: &str, script: &str) -> Result {
 fn script_by(python: &Path, client: &str, script: &str) -> Result {
     // A client's second script leaves the files of the first.
     let name = if client == script { client.to_owned() } else { format!("{client}-{script}") };
+    let work = empty_work(&name)?;
+    sh(&mut python_script(python, client, script, &work))
+}
+
+/// An empty folder for the files of a script.
+fn empty_work(name: &str) -> Result<PathBuf> {
     let work = folder().join("work").join(name);
     crate::shell::empty_dir(&work)?;
+    Ok(work)
+}
+
+/// The command that runs a script for a client in a folder.
+fn python_script(python: &Path, client: &str, script: &str, work: &Path) -> Command {
     let mut command = program(python);
     command
         .arg(format!("xtask/clients/check_{script}.py"))
         .env("OROGEN_CLIENT", client)
         .env("OROGEN", orogen())
         .env("OROGEN_ROOT", root())
-        .env("OROGEN_WORK", &work)
+        .env("OROGEN_WORK", work)
         .env("OROGEN_NODE_BIN", install::node_bin())
         // No .pyc files in the source tree.
         .env("PYTHONDONTWRITEBYTECODE", "1");
-    sh(&mut command)
+    command
 }

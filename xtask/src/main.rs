@@ -25,6 +25,7 @@ mod steps;
 mod table;
 mod test;
 mod translations;
+mod web;
 mod words;
 
 use std::process::ExitCode;
@@ -50,6 +51,7 @@ const COMMANDS: &[Command] = &[
     Command { name: "book", about: book::ABOUT, help: book::HELP, run: book::run },
     Command { name: "resolution", about: resolution::ABOUT, help: resolution::HELP, run: resolution::run },
     Command { name: "fuzz", about: fuzz::ABOUT, help: fuzz::HELP, run: fuzz::run },
+    Command { name: "web", about: web::ABOUT, help: web::HELP, run: web::run },
     Command { name: "bench", about: bench::ABOUT, help: bench::HELP, run: bench::run },
 ];
 

@@ -8,6 +8,8 @@ use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
+use crate::platform;
+
 /// A language of the interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub enum Language {
@@ -57,13 +59,25 @@ impl Language {
         }
     }
 
-    /// The language of the system, from its environment variables.
+    /// The code of the language.
+    #[must_use]
+    pub fn code(self) -> &'static str {
+        match self {
+            Language::English => "en",
+            Language::Chinese => "zh-CN",
+        }
+    }
+
+    /// The language with this code; `None` if the interface lacks it.
+    #[must_use]
+    pub fn of_code(code: &str) -> Option<Language> {
+        Language::ALL.into_iter().find(|language| language.code() == code)
+    }
+
+    /// The language of the system, as it states it.
     #[must_use]
     pub fn of_system() -> Language {
-        let set = ["LC_ALL", "LC_MESSAGES", "LANG"]
-            .into_iter()
-            .find_map(|name| std::env::var(name).ok().filter(|v| !v.is_empty()));
-        match set {
+        match platform::locale() {
             Some(locale) if locale.starts_with("zh") => Language::Chinese,
             _ => Language::English,
         }

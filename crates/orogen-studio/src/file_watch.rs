@@ -7,6 +7,7 @@ use std::time::Duration;
 use orogen::{Error, ErrorKind, Result};
 
 use crate::files;
+use crate::platform;
 use crate::preview::worker::Wake;
 
 /// Time between two looks at the file.
@@ -49,8 +50,8 @@ impl FileWatch {
                 }
             }
         };
-        let started = std::thread::Builder::new().name("file watch".into()).spawn(watch);
-        started.map_err(|cause| Error::new(ErrorKind::File, format!("cannot start a thread: {cause}")))?;
+        platform::watch("file watch", watch)
+            .map_err(|cause| Error::new(ErrorKind::File, format!("cannot start a thread: {cause}")))?;
         Ok(FileWatch { paths })
     }
 

@@ -1,13 +1,15 @@
 //! The only access to files: reading and writing recipes and the studio's own settings.
 //!
-//! The rest of the studio works on texts and values, so a build for a browser only needs a replacement of this file.
+//! In a browser these files are in memory, see [`crate::platform`].
 
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use orogen::io::open;
+use orogen::io::{fs, open};
 use orogen::recipe::document::LONGEST_TEXT;
 use orogen::{Error, ErrorKind, Result};
+
+pub use crate::platform::{has_file_dialogs, settings_folder, working_folder};
 
 /// Reads a text.
 ///
@@ -53,7 +55,7 @@ pub fn next_version(path: &Path) -> PathBuf {
     let base = version(&stem).map_or(stem.as_str(), |(base, _)| base);
     let end = path.extension().map_or(String::new(), |end| format!(".{}", end.to_string_lossy()));
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let beside = std::fs::read_dir(folder).into_iter().flatten().flatten().filter_map(|entry| {
+    let beside = fs::read_dir(folder).into_iter().flatten().flatten().filter_map(|entry| {
         let name = entry.file_name().to_string_lossy().into_owned();
         let (other, number) = version(name.strip_suffix(&end)?)?;
         (other == base).then_some(number)
@@ -74,20 +76,20 @@ fn version(stem: &str) -> Option<(&str, u32)> {
 /// # Errors
 /// If it cannot be created.
 pub fn make_folder(folder: &Path) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(|cause| Error::file("create the folder", folder, &cause))
+    fs::create_dir_all(folder).map_err(|cause| Error::file("create the folder", folder, &cause))
 }
 
 /// A locked file. The lock ends when this is dropped, or the process ends.
 #[derive(Debug)]
 pub struct Lock {
-    _file: std::fs::File,
+    _file: fs::File,
 }
 
 /// Locks a file, which is created if necessary; `None` if another process or window has the lock, or it cannot be
 /// opened.
 #[must_use]
 pub fn lock(path: &Path) -> Option<Lock> {
-    let file = std::fs::OpenOptions::new().create(true).truncate(false).read(true).write(true).open(path).ok()?;
+    let file = fs::OpenOptions::new().create(true).truncate(false).read(true).write(true).open(path).ok()?;
     file.try_lock().ok().map(|()| Lock { _file: file })
 }
 
@@ -105,8 +107,8 @@ pub struct About {
 /// Facts about a file, or about a folder with entries; `None` if there is none.
 #[must_use]
 pub fn about(path: &Path) -> Option<About> {
-    let metadata = std::fs::metadata(path).ok()?;
-    let entries = if metadata.is_dir() { std::fs::read_dir(path).ok()?.count() as u64 } else { 0 };
+    let metadata = fs::metadata(path).ok()?;
+    let entries = if metadata.is_dir() { fs::read_dir(path).ok()?.count() as u64 } else { 0 };
     let is_folder = metadata.is_dir();
     let size = if is_folder { entries } else { metadata.len() };
     (!is_folder || entries > 0).then(|| About { size, is_folder, changed: metadata.modified().ok() })
@@ -115,27 +117,13 @@ pub fn about(path: &Path) -> Option<About> {
 /// The time of the last change of a file; `None` if it does not exist.
 #[must_use]
 pub fn changed(path: &Path) -> Option<SystemTime> {
-    std::fs::metadata(path).and_then(|metadata| metadata.modified()).ok()
+    fs::metadata(path).and_then(|metadata| metadata.modified()).ok()
 }
 
 /// Removes a file; it is not an error if it does not exist.
 pub fn remove(path: &Path) {
     // A file that could not be removed is found again at the next start.
-    let _ = std::fs::remove_file(path);
-}
-
-/// The folder of the studio's settings: `orogen` in the system's settings folder; `None` if the system has none.
-#[must_use]
-pub fn settings_folder() -> Option<PathBuf> {
-    let var = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-    let base = if cfg!(windows) {
-        var("APPDATA")
-    } else if cfg!(target_os = "macos") {
-        var("HOME").map(|home| home.join("Library/Application Support"))
-    } else {
-        var("XDG_CONFIG_HOME").or_else(|| var("HOME").map(|home| home.join(".config")))
-    };
-    base.map(|base| base.join("orogen"))
+    let _ = fs::remove_file(path);
 }
 
 /// An entry of a folder.
@@ -153,7 +141,7 @@ pub struct Entry {
 /// If the folder cannot be read.
 pub fn list(folder: &Path) -> Result<Vec<Entry>> {
     let failed = |cause: std::io::Error| Error::file("read the folder", folder, &cause);
-    let mut entries: Vec<Entry> = std::fs::read_dir(folder)
+    let mut entries: Vec<Entry> = fs::read_dir(folder)
         .map_err(failed)?
         .flatten()
         .filter(|entry| !entry.file_name().to_string_lossy().starts_with('.'))
@@ -161,35 +149,6 @@ pub fn list(folder: &Path) -> Result<Vec<Entry>> {
         .collect();
     entries.sort_by(|a, b| b.is_folder.cmp(&a.is_folder).then_with(|| a.path.cmp(&b.path)));
     Ok(entries)
-}
-
-/// The working folder.
-#[must_use]
-pub fn working_folder() -> PathBuf {
-    std::env::current_dir().unwrap_or_default()
-}
-
-/// Whether the system has dialogs for choosing files. On Linux that is a desktop portal that has such a dialog.
-#[must_use]
-pub fn has_file_dialogs() -> bool {
-    static HAS: std::sync::OnceLock<bool> = std::sync::OnceLock::new();
-    *HAS.get_or_init(find_file_dialogs)
-}
-
-fn find_file_dialogs() -> bool {
-    if cfg!(any(windows, target_os = "macos")) {
-        return true;
-    }
-    let var = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
-    let dirs = var("XDG_DATA_DIRS").unwrap_or_else(|| "/usr/local/share:/usr/share".into());
-    let folders: Vec<PathBuf> = std::env::split_paths(&dirs).collect();
-    let starts = |folder: &PathBuf| folder.join("dbus-1/services/org.freedesktop.portal.Desktop.service").is_file();
-    let has_dialog = |folder: &PathBuf| {
-        let portals = std::fs::read_dir(folder.join("xdg-desktop-portal/portals")).into_iter().flatten().flatten();
-        let mut texts = portals.filter_map(|portal| std::fs::read_to_string(portal.path()).ok());
-        texts.any(|text| text.contains("org.freedesktop.impl.portal.FileChooser"))
-    };
-    var("DBUS_SESSION_BUS_ADDRESS").is_some() && folders.iter().any(starts) && folders.iter().any(has_dialog)
 }
 
 #[cfg(test)]

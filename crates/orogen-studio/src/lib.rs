@@ -9,10 +9,13 @@ pub mod editing;
 pub mod export;
 pub mod file_watch;
 pub mod files;
+pub mod platform;
 pub mod preview;
 pub mod recovery;
 pub mod settings;
 pub mod studio;
+#[cfg(target_arch = "wasm32")]
+pub mod tasks;
 pub mod view;
 #[cfg(feature = "window")]
 pub mod window;

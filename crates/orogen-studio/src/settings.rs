@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use self::layout::{KeptLayout, Layout};
 use crate::catalogue::Language;
 use crate::files;
+use crate::platform;
 
 /// Maximum number of recent files.
 const RECENT: usize = 12;
@@ -55,7 +56,7 @@ pub struct Settings {
 }
 
 /// The default of [`Settings::memory`].
-const MEMORY: u64 = 2 << 30;
+const MEMORY: u64 = platform::MEMORY;
 
 impl Default for Settings {
     fn default() -> Settings {

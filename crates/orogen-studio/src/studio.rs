@@ -118,6 +118,7 @@ impl Studio {
         self.asked = None;
         self.land = None;
         self.asked_small = None;
+        self.worker.cancel();
         self.thumbnails.cancel();
         self.detail.clear();
     }
@@ -198,7 +199,7 @@ impl Studio {
             return false;
         }
         self.detail.cancel();
-        if !self.document.is_valid() {
+        if !self.document.is_valid() || self.worker.should_wait() {
             return false;
         }
         self.asked = Some(now);
@@ -309,6 +310,7 @@ impl Studio {
                     self.failure = None;
                     is_new = true;
                 }
+                Event::Next(_) => {}
                 Event::Failed(error) => self.failure = Some(error),
                 Event::Done => self.failure = None,
             }

@@ -5,6 +5,7 @@ use super::palette::NO_DATA;
 use super::ramp::Ramp;
 use crate::format::levels::Levels;
 use orogen_grid::grid::Grid;
+use serde::{Deserialize, Serialize};
 
 /// The atlas tint: green lowlands, then straw, ochre, brown, gray and white heights. The sea darkens with depth. Land
 /// and sea meet exactly at sea level.
@@ -13,7 +14,7 @@ use orogen_grid::grid::Grid;
 /// over the relief, such hills would have snow. This tint is a compromise: the more relief the land has, the higher in
 /// the ramp its summits are (300 m is ochre, 4000 m is white), and likewise for the depth of the sea. Most real land is
 /// low. If much of the land is high, colors are shifted towards green, so that summits still stand out.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Atlas {
     land: Ramp,
     sea: Ramp,

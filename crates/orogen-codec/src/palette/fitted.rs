@@ -2,20 +2,21 @@
 
 use super::color::{Light, Rgb, decode, linear, mix, oklab};
 use super::palette::{Mix, NO_DATA, Palette, Position};
+use serde::{Deserialize, Serialize};
 
 /// Number of table entries for the narrowest interval between two stops, and minimum and maximum size of a table.
 const PER_STRETCH: f64 = 48.0;
 const ENTRIES: [f64; 2] = [256.0, 16_384.0];
 
 /// A palette fitted to a range of heights, prepared for lookup.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Fitted {
     /// Pieces without a hard step inside, in ascending order. Each begins at its own height.
     pieces: Vec<Segment>,
     missing: Light,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 struct Segment {
     /// The lowest height of the piece.
     from: f32,

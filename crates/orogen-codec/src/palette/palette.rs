@@ -1,12 +1,13 @@
 //! Palettes: colors at positions, before they are applied to heights.
 
 use super::color::Rgb;
+use serde::{Deserialize, Serialize};
 
 /// The default color of a sample without a finite value: a light, neutral gray.
 pub const NO_DATA: Rgb = [222, 222, 222];
 
 /// The position of a color.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Position {
     /// A height in metres, or a value in the unit of the layer.
@@ -41,7 +42,7 @@ impl Position {
 }
 
 /// A color and its position. Two stops at the same position give a hard step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
     /// The position.
     pub at: Position,
@@ -50,7 +51,7 @@ pub struct Stop {
 }
 
 /// The color space in which colors between stops are mixed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Mix {
     /// Oklab, which is perceptually uniform.
@@ -83,7 +84,7 @@ impl Mix {
 }
 
 /// Colors for a map.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Palette {
     /// The name.

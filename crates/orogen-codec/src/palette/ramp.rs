@@ -1,12 +1,13 @@
 //! Color ramps over 0 to 1.
 
 use super::color::{Light, Rgb, decode, linear, mix, oklab};
+use serde::{Deserialize, Serialize};
 
 /// Number of table entries, so that steps are far below the resolution of eight bits.
 const STEPS: usize = 1024;
 
 /// A color ramp over 0 to 1.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Ramp {
     table: Vec<Light>,
 }

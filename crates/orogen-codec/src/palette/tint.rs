@@ -6,9 +6,10 @@ use super::fitted::Fitted;
 use super::palette::Palette;
 use crate::format::levels::Levels;
 use orogen_grid::grid::Grid;
+use serde::{Deserialize, Serialize};
 
 /// A mapping from heights to colors.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Tint {
     colors: Colors,
     sea_level: f32,
@@ -16,7 +17,7 @@ pub struct Tint {
     sea: bool,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 enum Colors {
     Atlas(Atlas),
     Fitted(Fitted),

@@ -3,6 +3,7 @@
 use super::fourier::power;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Side of the largest square that is transformed. Larger grids are covered by several squares.
@@ -15,7 +16,7 @@ const CLASSES_AN_OCTAVE: f64 = 3.0;
 const LAGS: [usize; 7] = [2, 3, 4, 6, 8, 12, 16];
 
 /// Mean power of a wavelength class.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Band {
     /// Wavelength of the class, in metres.

@@ -1,10 +1,12 @@
 //! A contour line.
 
+use serde::{Deserialize, Serialize};
+
 /// A contour line.
 ///
 /// With north up, higher ground is to the left in the direction of the line: rings are counter-clockwise around summits
 /// and clockwise around hollows.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Line {
     /// The height of the line, in metres.
     pub elevation: f64,

@@ -6,9 +6,10 @@ use crate::checks::{checks, never, now_and_then, steps};
 use crate::error;
 use crate::grid::Grid;
 use crate::progress::Progress;
+use serde::{Deserialize, Serialize};
 
 /// A stretch of a river between confluences.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Reach {
     /// The cells of the reach, downstream. The last one is the first cell of the next reach, or the outlet.

@@ -2,9 +2,10 @@
 
 use super::sky::{SUN_RADIUS, Sky};
 use orogen_io::palette::color::Light;
+use serde::{Deserialize, Serialize};
 
 /// The light of a picture, wherever its land is.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Lighting {
     pub(super) sky: Sky,
     /// The horizontal direction to the sun, and the tangents of the elevations of its lower and upper limb.

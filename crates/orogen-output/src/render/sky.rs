@@ -8,6 +8,7 @@
 
 use super::vector::Vector;
 use orogen_io::palette::color::Light;
+use serde::{Deserialize, Serialize};
 
 /// Radii in metres: the Earth, the top of the atmosphere, the observer.
 const EARTH: f32 = 6_360_000.0;
@@ -45,7 +46,7 @@ const SUN_STEPS: usize = 8;
 
 /// A clear sky with the sun at one position. Light is relative to the sunlight above the atmosphere on a surface that
 /// faces the sun.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Sky {
     sun: Vector,
     /// The horizontal direction to the sun.

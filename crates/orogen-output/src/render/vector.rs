@@ -1,9 +1,10 @@
 //! Vectors in space.
 
+use serde::{Deserialize, Serialize};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A direction or position: x east, y south, z up, as in grids.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Vector {
     /// East.
     pub x: f64,

@@ -13,6 +13,7 @@ use orogen_grid::analysis::spectrum::{self, Band, Rises};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
+use serde::{Deserialize, Serialize};
 
 /// Width of a class of slopes, in degrees.
 pub const SLOPE_CLASS: f64 = 2.0;
@@ -37,7 +38,7 @@ const SPECTRUM: u64 = 12 << 20;
 const STEPS: usize = 100;
 
 /// The statistics of a terrain.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Measures {
     /// Number of land samples.
     pub land: usize,

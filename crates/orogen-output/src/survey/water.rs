@@ -22,13 +22,14 @@ use orogen_grid::hydrology::{drainage, fill, strahler};
 use orogen_grid::progress::Progress;
 use orogen_io::pages::{self, Pages, SIDE};
 use orogen_io::raster::Raster;
+use serde::{Deserialize, Serialize};
 
 /// Thresholds of rivers: minimum drainage area in m^2, and minimum number of cells.
 pub const SPRING: f64 = 5e5;
 const FEWEST_CELLS: u32 = 32;
 
 /// Statistics of depressions and rivers.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Water {
     /// Share of the cells below the spill level of their depression.
     pub depressions: f64,

@@ -104,3 +104,27 @@ impl Export {
         Some(export)
     }
 }
+
+/// How an export is sent to another instance of the program, for `#[serde(with = ...)]`.
+pub mod wire {
+    use serde::de::Error as _;
+    use serde::ser::Error as _;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::{Export, KeptExport, Path, Region};
+
+    #[allow(missing_docs, clippy::missing_errors_doc, reason = "as in serde")]
+    pub fn serialize<S: Serializer>(export: &Export, to: S) -> Result<S::Ok, S::Error> {
+        let kept = serde_json::to_string(&export.to_kept(Path::new(""))).map_err(S::Error::custom)?;
+        (kept, &export.map.own_title, export.map.is_place).serialize(to)
+    }
+
+    #[allow(missing_docs, clippy::missing_errors_doc, reason = "as in serde")]
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Export, D::Error> {
+        let (kept, title, is_place) = <(String, String, bool)>::deserialize(from)?;
+        let kept: KeptExport = serde_json::from_str(&kept).map_err(D::Error::custom)?;
+        Export::new(Region::Whole, &title, is_place, Path::new(""))
+            .and_then(|usual| Export::of_kept(&kept, Path::new(""), &usual))
+            .ok_or_else(|| D::Error::custom("no such kind of export"))
+    }
+}

@@ -7,9 +7,36 @@ use std::sync::mpsc::{Receiver, channel};
 
 use orogen::recipe::Recipe;
 use orogen::{Progress, Result, Session};
+use serde::{Deserialize, Serialize};
 
+use super::kept;
 use super::request::Export;
+use crate::platform::{self, Task, wire};
 use crate::preview::worker::Wake;
+
+/// The work of an export.
+#[derive(Serialize, Deserialize)]
+pub struct Exporting {
+    #[serde(with = "kept::wire")]
+    export: Export,
+    #[serde(with = "wire::recipe")]
+    recipe: Recipe,
+    /// The recipe's file.
+    own: Option<PathBuf>,
+}
+
+/// The end of an export: a description of the file.
+#[derive(Serialize, Deserialize)]
+pub struct Event(#[serde(with = "wire::result")] Result<String>);
+
+impl Task for Exporting {
+    const NAME: &'static str = "export";
+    type Event = Event;
+
+    fn run(self, session: &Session, progress: &Progress, tell: &(dyn Fn(Event) + Send + Sync)) {
+        tell(Event(self.export.run(session, self.recipe, self.own.as_deref(), progress)));
+    }
+}
 
 /// A running export.
 pub struct Running {
@@ -37,10 +64,9 @@ impl Running {
             told();
         });
         let (sender, result) = channel();
-        let own_progress = progress.clone();
-        session.start(move |session| {
-            // The dialog may already be closed.
-            let _ = sender.send(export.run(session, recipe, own.as_deref(), &own_progress));
+        // The dialog may already be closed.
+        platform::start(session, Exporting { export, recipe, own }, &progress, move |Event(result)| {
+            let _ = sender.send(result);
             wake();
         })?;
         Ok(Running { progress, share, result })

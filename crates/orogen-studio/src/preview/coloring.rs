@@ -4,9 +4,12 @@ use std::sync::Arc;
 
 use orogen::io::palette::Palette;
 use orogen::recipe::Recipe;
+use serde::{Deserialize, Serialize};
+
+use crate::platform::wire;
 
 /// What the colors show.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub enum Coloring {
     /// The values of the layer, in the layer's own palette.
     #[default]
@@ -14,7 +17,7 @@ pub enum Coloring {
     /// The values of the layer, in a built-in palette.
     Named(String),
     /// The values of the layer, in a palette that is being edited.
-    Edited(Arc<Palette>),
+    Edited(#[serde(with = "wire::shared")] Arc<Palette>),
     /// The surfaces of the ground: those of the recipe, or the standard surfaces.
     Surfaces,
     /// The biomes of the recipe.

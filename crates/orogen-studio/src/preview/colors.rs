@@ -9,13 +9,14 @@ use orogen::output::map::Painter;
 use orogen::recipe::Recipe;
 use orogen::recipe::outputs::CLASS;
 use orogen::world::HEIGHT;
+use serde::{Deserialize, Serialize};
 
 use super::coloring::Coloring;
 use super::legend::{Legend, STEPS};
 use super::statistics::range;
 
 /// How values are converted to colors.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum Colors {
     /// By a tint.
     Tint {

@@ -3,6 +3,7 @@
 use orogen::grid::contour::levels::is_index;
 use orogen::grid::contour::{Line, chaikin, levels_every, round_interval, trace};
 use orogen::{Grid, Result, Window};
+use serde::{Deserialize, Serialize};
 
 use super::statistics::range;
 
@@ -14,7 +15,7 @@ const MOST: usize = 25;
 const FINEST: usize = 1024;
 
 /// Contour lines.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Contours {
     /// The interval in metres.
     pub interval: f64,

@@ -4,11 +4,13 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use orogen::{Grid, Progress, Result, Session, Window};
+use serde::{Deserialize, Serialize};
 
 use super::frame::{Frame, Key};
 use super::request::Request;
 use super::ring::Ring;
 use super::worker::{self, Wake};
+use crate::platform::{self, Task, wire};
 use crate::view::rings::is_within;
 
 /// Finer rings are left out if the land is as smooth as this, relative to the cell.
@@ -29,7 +31,8 @@ pub struct Detail {
 }
 
 /// An event of the work.
-enum Event {
+#[derive(Serialize, Deserialize)]
+pub enum Event {
     /// The next finer ring.
     Ring(Box<Ring>),
     /// There are no more rings.
@@ -69,19 +72,13 @@ impl Detail {
         self.running = Some(progress.clone());
         let (number, sender, wake) = (self.number, self.sender.clone(), Arc::clone(&self.wake));
         let frame = Arc::clone(frame);
-        let started = session.start(move |session| {
-            // The window may already be closed.
-            let tell = |event: Event| {
-                let _ = sender.send((number, event));
-                wake();
-            };
-            // Without memory, or if the world fails, there is no finer ring.
-            let _ = make(session, (&request, &frame), (&windows, &kept, &heights), &progress, &tell);
-            if !progress.is_cancelled() {
-                tell(Event::Done);
-            }
-        });
-        if started.is_err() {
+        let rings = RingTask { request, frame, windows, kept, heights };
+        // The window may already be closed.
+        let tell = move |event: Event| {
+            let _ = sender.send((number, event));
+            wake();
+        };
+        if platform::start(session, rings, &progress, tell).is_err() {
             self.running = None;
         }
     }
@@ -154,14 +151,38 @@ impl Drop for Detail {
     }
 }
 
-/// Makes rings from coarse to fine. `kept` are those that exist, `heights` the heights that are known.
-fn make(
-    session: &Session,
-    (request, frame): (&Request, &Frame),
-    (windows, kept, heights): (&[Window], &[Arc<Ring>], &[Arc<Grid>]),
-    progress: &Progress,
-    tell: &impl Fn(Event),
-) -> Result<()> {
+/// The work for rings of a picture.
+#[derive(Serialize, Deserialize)]
+pub struct RingTask {
+    request: Request,
+    #[serde(with = "wire::shared")]
+    frame: Arc<Frame>,
+    /// From coarse to fine.
+    windows: Vec<Window>,
+    /// Rings that exist.
+    #[serde(with = "wire::shared_list")]
+    kept: Vec<Arc<Ring>>,
+    /// Heights that are known.
+    #[serde(with = "wire::shared_list")]
+    heights: Vec<Arc<Grid>>,
+}
+
+impl Task for RingTask {
+    const NAME: &'static str = "rings";
+    type Event = Event;
+
+    fn run(self, session: &Session, progress: &Progress, tell: &(dyn Fn(Event) + Send + Sync)) {
+        // Without memory, or if the world fails, there is no finer ring.
+        let _ = make(session, &self, progress, tell);
+        if !progress.is_cancelled() {
+            tell(Event::Done);
+        }
+    }
+}
+
+/// Makes rings from coarse to fine.
+fn make(session: &Session, rings: &RingTask, progress: &Progress, tell: &dyn Fn(Event)) -> Result<()> {
+    let RingTask { request, frame, windows, kept, heights } = rings;
     let world = worker::open(session, request, 1)?;
     let mut coarser = Arc::clone(&frame.heights);
     for window in windows {

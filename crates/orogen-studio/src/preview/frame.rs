@@ -5,21 +5,26 @@ use std::sync::Arc;
 use orogen::budget::Reservation;
 use orogen::layer::LayerKind;
 use orogen::{Grid, Window};
+use serde::{Deserialize, Serialize};
 
 use super::colors::Colors;
 use super::contours::Contours;
 use super::legend::Legend;
 use super::rivers::Rivers;
 use super::statistics::Statistics;
+use crate::platform::wire;
 
 /// The identity of a picture: the request, the number of samples along the width, and the time.
 pub type Key = (u64, usize, u64);
+
+/// The unit of a layer, or empty.
+pub type Unit = &'static str;
 
 /// Memory per sample in bytes.
 const BYTES: u64 = 32;
 
 /// The quality of a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quality {
     /// Made from a draft of the recipe; the land differs in detail.
     Draft,
@@ -30,36 +35,44 @@ pub enum Quality {
 }
 
 /// A picture of a part of a world.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Frame {
     /// The number of the request.
     pub request: u64,
     /// The quality.
     pub quality: Quality,
     /// The heights of the surface, in metres.
+    #[serde(with = "wire::shared")]
     pub heights: Arc<Grid>,
     /// The lowest and the highest height, in metres; 0 if no sample has a height.
     pub levels: [f32; 2],
     /// The colored layer, unless it is the surface.
+    #[serde(with = "wire::shared_option")]
     pub values: Option<Arc<Grid>>,
     /// The kind of quantity of the colored layer.
     pub kind: LayerKind,
     /// The unit of the colored layer, or empty.
-    pub unit: &'static str,
+    #[serde(with = "wire::word")]
+    pub unit: Unit,
     /// How values are converted to colors; `None` if the colors show the cover of the ground.
     pub colors: Option<Colors>,
     /// Colors without light: red, green, blue and 255 for each sample, sRGB.
+    #[serde(with = "wire::bytes")]
     pub albedo: Vec<u8>,
     /// The legend of the colors.
     pub legend: Legend,
     /// Colors with relief shading, like on maps.
+    #[serde(with = "wire::bytes")]
     pub shaded: Vec<u8>,
     /// The rivers and lakes that are painted on it, if requested.
+    #[serde(with = "wire::shared_option")]
     pub rivers: Option<Arc<Rivers>>,
     /// Contour lines of the heights, if requested.
+    #[serde(with = "wire::shared_option")]
     pub contours: Option<Arc<Contours>>,
     /// How much of the sun each sample sees, 0 to 255. Two bytes per sample: for the ground, and for the surface of
     /// land and sea.
+    #[serde(with = "wire::bytes")]
     pub light: Vec<u8>,
     /// The sea level in metres.
     pub sea_level: f64,
@@ -67,8 +80,9 @@ pub struct Frame {
     pub statistics: Statistics,
     /// Seconds since the request.
     pub seconds: f64,
-    /// The memory of the picture, which counts towards the session's budget.
-    pub memory: Arc<Reservation>,
+    /// The memory of the picture, which counts towards the budget of the session that made it.
+    #[serde(skip)]
+    pub memory: Option<Arc<Reservation>>,
 }
 
 impl Frame {

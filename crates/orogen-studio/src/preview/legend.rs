@@ -1,9 +1,10 @@
 //! The meaning of the colors of a picture.
 
 use orogen::io::palette::Rgb;
+use serde::{Deserialize, Serialize};
 
 /// The meaning of the colors of a picture.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Legend {
     /// Colors of a range of values.
     Ramp {
@@ -19,7 +20,7 @@ pub enum Legend {
 }
 
 /// A named color.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     /// The name.
     pub name: String,

@@ -3,17 +3,20 @@
 use orogen::layer::LayerKind;
 use orogen::world::HEIGHT;
 use orogen::{Progress, Result, Window, World};
+use serde::{Deserialize, Serialize};
 
 use super::coloring::Coloring;
 use super::colors::Colors;
 use super::failure;
+use crate::platform::wire;
 
 /// A small picture with relief shading.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Picture {
     /// Columns and rows.
     pub size: [usize; 2],
     /// Red, green, blue and 255 for each sample, sRGB.
+    #[serde(with = "wire::bytes")]
     pub pixels: Vec<u8>,
 }
 

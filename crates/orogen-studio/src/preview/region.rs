@@ -1,9 +1,10 @@
 //! The visible part of a world.
 
 use orogen::{Result, Window, World};
+use serde::{Deserialize, Serialize};
 
 /// A part of a world.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Region {
     /// The whole of a bounded world.
     Whole,

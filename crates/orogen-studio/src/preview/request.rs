@@ -4,15 +4,18 @@ use std::sync::Arc;
 
 use orogen::recipe::Recipe;
 use orogen::world::HEIGHT;
+use serde::{Deserialize, Serialize};
 
 use super::coloring::Coloring;
 use super::frame::Frame;
 use super::region::Region;
+use crate::platform::wire;
 
 /// A request for pictures.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Request {
     /// The recipe.
+    #[serde(with = "wire::recipe")]
     pub recipe: Recipe,
     /// The layer that is colored: an output, `node`, `node.layer`, or a layer derived from the heights.
     pub layer: String,
@@ -31,6 +34,7 @@ pub struct Request {
     /// Whether rivers and lakes are painted.
     pub rivers: bool,
     /// The finest picture of the same land with other colors or light; its samples are reused.
+    #[serde(with = "wire::shared_option")]
     pub land: Option<Arc<Frame>>,
 }
 

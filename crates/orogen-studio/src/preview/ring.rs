@@ -4,27 +4,34 @@ use std::sync::Arc;
 
 use orogen::budget::Reservation;
 use orogen::{Grid, Progress, Result, Window, World};
+use serde::{Deserialize, Serialize};
 
 use super::frame::{Frame, Key};
 use super::request::Request;
 use super::sunlight::{beyond, sunlight};
 use super::{cover, failure};
+use crate::platform::wire;
 
 /// A part of a picture with finer samples, in the colors and the light of the picture.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Ring {
     /// The picture that it belongs to.
     pub frame: Key,
     /// The heights of that picture.
+    #[serde(with = "wire::shared")]
     pub land: Arc<Grid>,
     /// The heights of the surface, in metres.
+    #[serde(with = "wire::shared")]
     pub heights: Arc<Grid>,
     /// Colors without light, as in a [`Frame`].
+    #[serde(with = "wire::bytes")]
     pub albedo: Vec<u8>,
     /// The light, as in a [`Frame`].
+    #[serde(with = "wire::bytes")]
     pub light: Vec<u8>,
-    /// The memory of the ring, which counts towards the session's budget.
-    pub memory: Arc<Reservation>,
+    /// The memory of the ring, which counts towards the budget of the session that made it.
+    #[serde(skip)]
+    pub memory: Option<Arc<Reservation>>,
 }
 
 impl Ring {
@@ -54,7 +61,7 @@ impl Ring {
         known: &[Arc<Grid>],
         progress: &Progress,
     ) -> Result<Ring> {
-        let memory = Arc::new(world.budget().reserve(Frame::memory(window))?);
+        let memory = Some(Arc::new(world.budget().reserve(Frame::memory(window))?));
         let heights = match known.iter().find(|grid| grid.window() == window) {
             Some(heights) => Arc::clone(heights),
             None => Arc::new(grid(world, &request.surface, window, progress)?),

@@ -10,6 +10,7 @@ use orogen::output::sheet::raster::draw_over;
 use orogen::output::sheet::scene::{Scene, Step};
 use orogen::recipe::Recipe;
 use orogen::{Grid, Progress, Result, Window, World};
+use serde::{Deserialize, Serialize};
 
 /// The least drainage area of a river, and the least area of a lake, as shares of the picture.
 const LEAST: [f64; 2] = [1.5e-3, 5e-5];
@@ -27,14 +28,14 @@ const COLOR: Rgb = [58, 118, 172];
 const COVER: f32 = 0.9;
 
 /// A line of a river in metres, and its width in metres.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct River {
     points: Vec<[f64; 2]>,
     width: f64,
 }
 
 /// Rivers and lakes, in metres of the world.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Rivers {
     rivers: Vec<River>,
     /// The parts of lakes: a shore and those of its islands, which are closed lines.

@@ -2,12 +2,13 @@
 
 use orogen::Grid;
 use orogen::grid::analysis::hypsometry;
+use serde::{Deserialize, Serialize};
 
 /// Number of bars of the histogram, and of steps of the curve.
 pub const BARS: usize = 64;
 
 /// Statistics of a layer.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
     /// The lowest and highest finite value; NaN if there is none.
     pub range: [f32; 2],

@@ -5,10 +5,12 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use orogen::recipe::Recipe;
 use orogen::{Progress, Result, Session};
+use serde::{Deserialize, Serialize};
 
 use super::picture::Picture;
 use super::region::Region;
 use super::worker::Wake;
+use crate::platform::{self, Task, wire};
 
 /// Number of samples along the longer side of a picture.
 pub const SIDE: usize = 128;
@@ -43,16 +45,10 @@ impl Strip {
         let (list, sender, wake) = (self.list, self.sender.clone(), Arc::clone(&self.wake));
         let progress = Progress::none();
         self.running = Some(progress.clone());
-        session.start(move |session| {
-            for (k, recipe) in recipes.into_iter().enumerate() {
-                let made = picture(session, &recipe, &layer, &progress);
-                if progress.is_cancelled() {
-                    return;
-                }
-                // The panel may already be closed.
-                let _ = sender.send((list, k, made));
-                wake();
-            }
+        // The panel may already be closed.
+        platform::start(session, Variants { recipes, layer }, &progress, move |Event(k, made)| {
+            let _ = sender.send((list, k, made));
+            wake();
         })
     }
 
@@ -74,6 +70,33 @@ impl Strip {
 impl Drop for Strip {
     fn drop(&mut self) {
         self.cancel();
+    }
+}
+
+/// The work for a list of variants.
+#[derive(Serialize, Deserialize)]
+pub struct Variants {
+    #[serde(with = "wire::recipes")]
+    recipes: Vec<Recipe>,
+    layer: String,
+}
+
+/// The picture of a variant, with its index.
+#[derive(Serialize, Deserialize)]
+pub struct Event(usize, #[serde(with = "wire::result")] Result<Picture>);
+
+impl Task for Variants {
+    const NAME: &'static str = "variants";
+    type Event = Event;
+
+    fn run(self, session: &Session, progress: &Progress, tell: &(dyn Fn(Event) + Send + Sync)) {
+        for (k, recipe) in self.recipes.iter().enumerate() {
+            let made = picture(session, recipe, &self.layer, progress);
+            if progress.is_cancelled() {
+                return;
+            }
+            tell(Event(k, made));
+        }
     }
 }
 

@@ -5,10 +5,12 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use orogen::output::survey::{Land, Measures, SurveyJob};
-use orogen::{Progress, Result, Session};
+use orogen::{Grid, Progress, Result, Session};
+use serde::{Deserialize, Serialize};
 
 use super::frame::{Frame, Key};
 use super::worker::Wake;
+use crate::platform::{self, Task, wire};
 
 /// The measurements of a picture; `None` if it has too little land.
 pub type Outcome = Result<Option<Measures>>;
@@ -43,10 +45,10 @@ impl Survey {
         self.asked = Some(key);
         let progress = Progress::none();
         self.running = Some(progress.clone());
-        let (frame, sender, wake) = (Arc::clone(frame), self.sender.clone(), Arc::clone(&self.wake));
-        let started = session.start(move |session| {
-            let outcome = measure(session, &frame, &progress);
-            // The panel may already be closed.
+        let (sender, wake) = (self.sender.clone(), Arc::clone(&self.wake));
+        let land = Measuring { heights: Arc::clone(&frame.heights), sea_level: frame.sea_level };
+        // The panel may already be closed.
+        let started = platform::start(session, land, &progress, move |Event(outcome)| {
             let _ = sender.send((key, outcome));
             wake();
         });
@@ -80,10 +82,31 @@ impl Drop for Survey {
     }
 }
 
-fn measure(session: &Session, frame: &Frame, progress: &Progress) -> Outcome {
-    let samples = frame.heights.data().len() as u64;
+/// The work of measuring heights.
+#[derive(Serialize, Deserialize)]
+pub struct Measuring {
+    #[serde(with = "wire::shared")]
+    heights: Arc<Grid>,
+    sea_level: f64,
+}
+
+/// What was measured.
+#[derive(Serialize, Deserialize)]
+pub struct Event(#[serde(with = "wire::result")] Outcome);
+
+impl Task for Measuring {
+    const NAME: &'static str = "measures";
+    type Event = Event;
+
+    fn run(self, session: &Session, progress: &Progress, tell: &(dyn Fn(Event) + Send + Sync)) {
+        tell(Event(measure(session, &self, progress)));
+    }
+}
+
+fn measure(session: &Session, Measuring { heights, sea_level }: &Measuring, progress: &Progress) -> Outcome {
+    let samples = heights.data().len() as u64;
     let _memory = session.budget().reserve(Measures::memory(samples).saturating_sub(4 * samples))?;
-    let land = Land::in_memory(&frame.heights, Some(frame.sea_level as f32));
+    let land = Land::in_memory(heights, Some(*sea_level as f32));
     session.install(|| SurveyJob::new(land).measure(progress))
 }
 

@@ -6,10 +6,12 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use orogen::recipe::{NamedNode, Recipe};
 use orogen::{ErrorKind, Progress, Result, Session, Window, World};
+use serde::{Deserialize, Serialize};
 
 use super::picture::Picture;
 use super::region::Region;
 use super::worker::Wake;
+use crate::platform::{self, Task, wire};
 
 /// Number of samples along the longer side of a picture.
 pub const SIDE: usize = 64;
@@ -21,17 +23,42 @@ const COARSER: u32 = 4;
 const PATIENCE: f64 = 4e8;
 
 /// Everything a picture depends on: the content key of its layer, and the window.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Key([u8; 32], Window);
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Key([u8; 32], Window);
 
 /// A picture, or `None` because it would take too long.
-type Made = (Key, Option<Arc<Picture>>);
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Made(Key, #[serde(with = "wire::shared_option")] Option<Arc<Picture>>);
 
-enum Event {
+/// An event of the work.
+#[derive(Serialize, Deserialize)]
+pub enum Event {
     /// The picture of a node, and whether it was newly computed.
     Node(String, Made, bool),
     /// All nodes have been processed.
     Done,
+}
+
+/// The work for the pictures of a recipe.
+#[derive(Serialize, Deserialize)]
+pub struct NodePictures {
+    #[serde(with = "wire::recipe")]
+    recipe: Recipe,
+    region: Region,
+    known: Vec<Made>,
+}
+
+impl Task for NodePictures {
+    const NAME: &'static str = "nodes";
+    type Event = Event;
+
+    fn run(self, session: &Session, progress: &Progress, tell: &(dyn Fn(Event) + Send + Sync)) {
+        // Recipes that cannot be opened have no pictures.
+        let _ = make(session, &self.recipe, self.region, self.known, progress, &tell);
+        if !progress.is_cancelled() {
+            tell(Event::Done);
+        }
+    }
 }
 
 /// Makes pictures of the nodes of a recipe; a new recipe cancels the work for the previous one.
@@ -77,16 +104,10 @@ impl Thumbnails {
         let known: Vec<Made> = self.made.values().cloned().collect();
         let progress = Progress::none();
         self.running = Some(progress.clone());
-        session.start(move |session| {
-            // The window may already be closed. Recipes that cannot be opened have no pictures.
-            let tell = |event: Event| {
-                let _ = sender.send((list, event));
-                wake();
-            };
-            let _ = make(session, &recipe, region, known, &progress, &tell);
-            if !progress.is_cancelled() {
-                tell(Event::Done);
-            }
+        // The window may already be closed.
+        platform::start(session, NodePictures { recipe, region, known }, &progress, move |event: Event| {
+            let _ = sender.send((list, event));
+            wake();
         })
     }
 
@@ -120,7 +141,7 @@ impl Thumbnails {
     /// The picture of a node, if there is one.
     #[must_use]
     pub fn of(&self, node: &str) -> Option<&Arc<Picture>> {
-        self.made.get(node).and_then(|(_, picture)| picture.as_ref())
+        self.made.get(node).and_then(|Made(_, picture)| picture.as_ref())
     }
 
     /// Whether pictures are being made.
@@ -184,18 +205,18 @@ fn one(worlds: &[World; 2], layer: &str, window: &Window, known: &[Made], progre
     let mut last = None;
     for world in worlds {
         let key = Key(world.key(layer)?, *window);
-        let same = known.iter().find(|(other, picture)| *other == key && picture.is_some());
+        let same = known.iter().find(|Made(other, picture)| *other == key && picture.is_some());
         if let Some(same) = same {
             return Ok((same.clone(), false));
         }
         let plan = world.plan(&[layer], window)?;
         if world.work_of(&plan)?.iter().sum::<f64>() <= PATIENCE {
-            return Ok(((key, Some(Arc::new(Picture::of(world, layer, window, progress)?))), true));
+            return Ok((Made(key, Some(Arc::new(Picture::of(world, layer, window, progress)?))), true));
         }
         last = Some(key);
     }
     let key = last.unwrap_or(Key([0; 32], *window));
-    Ok(((key, None), false))
+    Ok((Made(key, None), false))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use orogen::budget::Reservation;
 use orogen::export::LayerSource;
@@ -12,6 +12,7 @@ use orogen::layer::LayerKind;
 use orogen::options::Options as LayerOptions;
 use orogen::output::map::Painter;
 use orogen::{Error, ErrorKind, Grid, Progress, Result, Session, World};
+use serde::{Deserialize, Serialize};
 
 use super::colors::Colors;
 use super::contours::Contours;
@@ -22,20 +23,63 @@ use super::stages::{self, Stage};
 use super::statistics::Statistics;
 use super::sunlight::sunlight;
 use super::{cover, failure};
+use crate::platform::{self, IS_STEPWISE, Instant, Task, wire};
 
 /// An event of the work.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub enum Event {
     /// A picture.
     Frame(Box<Frame>),
+    /// A step is done; this is the next one.
+    Next(usize),
     /// All pictures are made.
     Done,
     /// The request failed.
-    Failed(Error),
+    Failed(#[serde(with = "wire::error")] Error),
 }
 
 /// Called from any thread when there is something new to show.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
+
+/// The work for a request.
+#[derive(Serialize, Deserialize)]
+pub struct Pictures {
+    request: Request,
+    /// The number of the request.
+    number: u64,
+    /// When it was made; in another instance, when it arrived there.
+    #[serde(skip, default = "Instant::now")]
+    begun: Instant,
+    /// Seconds that earlier steps took.
+    spent: f64,
+    /// The step to do; all of them if `None`.
+    step: Option<usize>,
+}
+
+impl Task for Pictures {
+    const NAME: &'static str = "pictures";
+    const IS_URGENT: bool = true;
+    type Event = Event;
+
+    fn delay(&self) -> Duration {
+        if self.step.is_some_and(|step| step > 0) { QUIET } else { Duration::ZERO }
+    }
+
+    fn run(self, session: &Session, progress: &Progress, tell: &(dyn Fn(Event) + Send + Sync)) {
+        match make(session, &self, progress, tell) {
+            Ok(Some(next)) => tell(Event::Next(next)),
+            Ok(None) => tell(Event::Done),
+            Err(error) if error.kind() == ErrorKind::Cancelled => {}
+            Err(error) => tell(Event::Failed(error)),
+        }
+    }
+}
+
+/// How long a finer picture waits for a change, where it could not be cancelled once it is begun.
+const QUIET: Duration = Duration::from_millis(120);
+
+/// How long a change waits for the first picture of the change before it, where that could not be cancelled.
+const PATIENCE: Duration = Duration::from_millis(700);
 
 /// Minimum time between two reports of the completed share, in milliseconds.
 const BETWEEN: u32 = 150;
@@ -51,6 +95,12 @@ pub struct Worker {
     /// The number of the last request.
     request: u64,
     running: Option<Progress>,
+    /// The current request, if it is done step by step.
+    stepwise: Option<Request>,
+    /// When it was made.
+    begun: Instant,
+    /// Whether it has a picture.
+    has_picture: bool,
     /// The completed share of the current request, in percent.
     share: Arc<AtomicU32>,
 }
@@ -60,18 +110,38 @@ impl Worker {
     #[must_use]
     pub fn new(session: Session, wake: Wake) -> Worker {
         let (sender, receiver) = channel();
-        Worker { session, wake, sender, receiver, early: None, request: 0, running: None, share: Arc::default() }
+        Worker {
+            session,
+            wake,
+            sender,
+            receiver,
+            early: None,
+            request: 0,
+            running: None,
+            stepwise: None,
+            begun: Instant::now(),
+            has_picture: false,
+            share: Arc::default(),
+        }
     }
 
     /// Requests pictures. An earlier request is cancelled. Returns the number of the request.
     pub fn ask(&mut self, request: Request) -> u64 {
         self.cancel();
         self.request += 1;
+        (self.begun, self.has_picture) = (Instant::now(), false);
+        self.stepwise = IS_STEPWISE.then(|| request.clone());
+        self.start(request, IS_STEPWISE.then_some(0));
+        self.request
+    }
+
+    /// Starts a step of the current request, or all of them.
+    fn start(&mut self, request: Request, step: Option<usize>) {
         let number = self.request;
         let (sender, wake) = (self.sender.clone(), Arc::clone(&self.wake));
         let (heard, told) = (Arc::new(AtomicU32::new(0)), Arc::clone(&self.wake));
         self.share = Arc::clone(&heard);
-        let begun = Instant::now();
+        let begun = self.begun;
         let last = AtomicU32::new(0);
         let progress = Progress::new(move |share| {
             let percent = (share * 100.0) as u32;
@@ -85,22 +155,16 @@ impl Worker {
             }
         });
         self.running = Some(progress.clone());
-        let work = move |session: &Session| {
-            // The window may already be closed.
-            let tell = |event: Event| {
-                let _ = sender.send((number, event));
-                wake();
-            };
-            match make(session, &request, (number, begun), &progress, &tell) {
-                Ok(()) => tell(Event::Done),
-                Err(error) if error.kind() == ErrorKind::Cancelled => {}
-                Err(error) => tell(Event::Failed(error)),
-            }
+        // The window may already be closed.
+        let tell = move |event: Event| {
+            let _ = sender.send((number, event));
+            wake();
         };
-        if let Err(error) = self.session.start(work) {
+        let spent = if step.is_some() { begun.elapsed().as_secs_f64() } else { 0.0 };
+        let pictures = Pictures { request, number, begun, spent, step };
+        if let Err(error) = platform::start(&self.session, pictures, &progress, tell) {
             let _ = self.sender.send((number, Event::Failed(error)));
         }
-        number
     }
 
     /// Cancels the current request.
@@ -122,16 +186,28 @@ impl Worker {
         if events.iter().any(|event| matches!(event, Event::Done | Event::Failed(_))) {
             self.running = None;
         }
+        self.has_picture |= events.iter().any(|event| matches!(event, Event::Frame(_)));
+        if let Some(Event::Next(step)) = events.last()
+            && let Some(request) = self.stepwise.clone()
+        {
+            self.start(request, Some(*step));
+        }
         events
+    }
+
+    /// Whether a change should wait for the first picture of the change before it.
+    #[must_use]
+    pub fn should_wait(&self) -> bool {
+        IS_STEPWISE && self.is_busy() && !self.has_picture && self.begun.elapsed() < PATIENCE
     }
 
     /// Waits for an event of the current request, for `limit` at most. Returns whether there is one.
     pub fn wait(&mut self, limit: Duration) -> bool {
         let until = Instant::now() + limit;
         while self.early.as_ref().is_none_or(|(request, _)| *request != self.request) {
-            match self.receiver.recv_timeout(until.saturating_duration_since(Instant::now())) {
-                Ok(event) => self.early = Some(event),
-                Err(_) => return false,
+            match platform::wait(&self.receiver, until.saturating_duration_since(Instant::now())) {
+                Some(event) => self.early = Some(event),
+                None => return false,
             }
         }
         true
@@ -162,17 +238,17 @@ impl Drop for Worker {
     }
 }
 
-/// Makes the pictures of a request.
+/// Makes the pictures of a request, or those of one step. Returns the next step, if there is one.
 fn make(
     session: &Session,
-    request: &Request,
-    (number, begun): (u64, Instant),
+    Pictures { request, number, begun, spent, step }: &Pictures,
     progress: &Progress,
-    tell: &(impl Fn(Event) + Clone + Send + Sync),
-) -> Result<()> {
+    tell: &(dyn Fn(Event) + Send + Sync),
+) -> Result<Option<usize>> {
     let world = open(session, request, 1)?;
     let tell_of = |frame: Frame| {
-        tell(Event::Frame(Box::new(Frame { request: number, seconds: begun.elapsed().as_secs_f64(), ..frame })));
+        let seconds = spent + begun.elapsed().as_secs_f64();
+        tell(Event::Frame(Box::new(Frame { request: *number, seconds, ..frame })));
     };
     if let Some(land) = &request.land {
         let samples = Samples {
@@ -180,16 +256,17 @@ fn make(
             values: land.values.clone(),
             unit: land.unit,
             kind: land.kind,
-            memory: Arc::new(world.budget().reserve(Frame::memory(land.window()))?),
+            memory: Some(Arc::new(world.budget().reserve(Frame::memory(land.window()))?)),
         };
         let frame = paint(&world, request, Quality::Fine, samples, progress)?;
         let known = land.rivers.clone();
         tell_of(with_rivers(&world, request, frame, known, progress)?);
-        return Ok(());
+        return Ok(None);
     }
     let stages = stages::of(&world, request)?;
+    let next = step.map(|step| step + 1).filter(|next| *next < stages.len());
     let mut works = Vec::new();
-    for stage in stages {
+    for (_, stage) in stages.into_iter().enumerate().filter(|(at, _)| step.is_none_or(|step| step == *at)) {
         let is_draft = stage.quality == Quality::Draft;
         let of_stage = || match stage.on_card {
             true => open(&session.drafting(), request, 1),
@@ -223,7 +300,7 @@ fn make(
             tell_of(with_rivers(world, request, frame, None, progress)?);
         }
     }
-    Ok(())
+    Ok(next)
 }
 
 /// A picture with its rivers and lakes, if they are requested. `known` are those that were found before.
@@ -273,13 +350,13 @@ struct Samples {
     values: Option<Arc<Grid>>,
     unit: &'static str,
     kind: LayerKind,
-    memory: Arc<Reservation>,
+    memory: Option<Arc<Reservation>>,
 }
 
 /// Computes the samples of a picture.
 fn samples(world: &World, request: &Request, stage: Stage, progress: &Progress) -> Result<Samples> {
     let window = request.region.window(world, stage.samples)?;
-    let memory = Arc::new(world.budget().reserve(Frame::memory(&window))?);
+    let memory = Some(Arc::new(world.budget().reserve(Frame::memory(&window))?));
     let heights = world.grids(&[&request.surface], &window, progress)?.pop().ok_or_else(failure::nothing)?;
     let mut unit = world.unit(&request.surface)?;
     let mut kind = world.kind(&request.surface)?;

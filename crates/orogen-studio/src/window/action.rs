@@ -74,6 +74,8 @@ pub enum Action {
     DropUnsaved(Unsaved),
     /// Saves the document to a file.
     Save(PathBuf),
+    /// Asks for a file of the computer, in a page.
+    Upload(Purpose),
     /// Sets whether files are chosen in dialogs of the system.
     SystemDialogs(bool),
     /// Sets the layout of the window.

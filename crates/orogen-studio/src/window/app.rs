@@ -28,6 +28,7 @@ use super::{fonts, menu, theme};
 use crate::catalogue::Language;
 use crate::editing::document::Document;
 use crate::file_watch::FileWatch;
+use crate::platform;
 use crate::preview::coloring::Coloring;
 use crate::preview::colors::palette;
 use crate::preview::worker::Wake;
@@ -93,6 +94,8 @@ pub struct Start {
     pub is_after_loss: bool,
     /// Seconds after which the device is lost, for tests.
     pub lose_device: Option<f64>,
+    /// What is said at the start, for example that a file could not be opened.
+    pub message: Option<String>,
 }
 
 impl App {
@@ -101,7 +104,7 @@ impl App {
     /// # Errors
     /// If no threads can be started.
     pub fn new(context: &eframe::CreationContext<'_>, start: Start) -> Result<App> {
-        let Start { settings, folder, document, gpu, watch, is_after_loss, lose_device } = start;
+        let Start { settings, folder, document, gpu, watch, is_after_loss, lose_device, message } = start;
         let session = Session::new(Options { memory: Budget::of(settings.memory), ..Options::default() })?;
         let session = match &gpu {
             Some(gpu) => session.with_device(Arc::new(gpu.clone())),
@@ -146,6 +149,9 @@ impl App {
         if let Some(document) = document {
             app.open(document);
         }
+        if let Some(message) = message {
+            app.say(&message);
+        }
         if is_after_loss {
             app.dialogs.message = Some((app.text("device.title").into(), app.text("device.lost").into()));
             let latest = app.dialogs.recovery.as_ref().and_then(|dialog| dialog.latest().cloned());
@@ -181,6 +187,11 @@ impl App {
     }
 
     fn use_language(&mut self, context: &Context) {
+        if platform::IS_PAGE {
+            platform::describe(&self.title, self.language.code());
+            context.request_repaint();
+            return;
+        }
         if self.language != Language::Chinese {
             // Without a thread, Chinese names are shown as boxes.
             let _ = fonts::add_chinese_later(context);
@@ -333,10 +344,13 @@ impl App {
     }
 
     /// Opens files that are dropped onto the window.
-    fn dropped(context: &Context, actions: &mut Vec<Action>) {
-        let paths: Vec<PathBuf> =
-            context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_path_buf()).collect());
-        actions.extend(paths.into_iter().take(1).map(Action::Open));
+    fn dropped(&mut self, context: &Context, actions: &mut Vec<Action>) {
+        let Some(file) = context.input(|input| input.raw.dropped_files.first().cloned()) else { return };
+        let wake = Arc::clone(&self.wake);
+        match platform::receive(&file, move || wake()) {
+            Some(chosen) => self.dialogs.upload = Some((Purpose::Open, chosen)),
+            None => actions.push(Action::Open(file.path().to_path_buf())),
+        }
     }
 
     /// Opens a text that was not saved.
@@ -434,7 +448,7 @@ impl eframe::App for App {
             studio.watch();
         }
         actions.extend(command::pressed(&context).into_iter().map(Action::Command));
-        Self::dropped(&context, &mut actions);
+        self.dropped(&context, &mut actions);
         theme::on_cleared(ui, |ui| self.show_panels(ui, &mut actions));
         let view = self.shown_view();
         self.dialogs.show(&context, self.studio.as_ref().zip(view.as_ref()), &self.wake, self.language, &mut actions);
@@ -462,6 +476,7 @@ impl eframe::App for App {
             if self.title != title {
                 // Each command makes the window draw again, and some systems do not tell its title.
                 self.title.clone_from(&title);
+                platform::describe(&title, self.language.code());
                 context.send_viewport_cmd(egui::ViewportCommand::Title(title));
             }
         }
@@ -478,5 +493,6 @@ impl eframe::App for App {
                 self.remember();
             }
         }
+        platform::end_frame();
     }
 }

@@ -2,6 +2,8 @@
 
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
+use crate::platform;
+
 /// A command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[allow(missing_docs, reason = "the list below tells what each is called")]
@@ -12,6 +14,7 @@ pub enum Command {
     Save,
     SaveAs,
     SaveVersion,
+    Download,
     Export,
     Quit,
     Undo,
@@ -115,14 +118,15 @@ impl Entry {
 const CTRL: Modifiers = Modifiers::COMMAND;
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
-/// All commands, in the order of their menus.
-pub static ALL: [Entry; 35] = [
+/// The commands of all platforms, in the order of their menus.
+pub static ALL: [Entry; 36] = [
     with_keys(Command::New, "command.new", Menu::File, false, CTRL, Key::N),
     with_keys(Command::Empty, "command.empty", Menu::File, false, CTRL_SHIFT, Key::N),
     with_keys(Command::Open, "command.open", Menu::File, false, CTRL, Key::O),
     with_keys(Command::Save, "command.save", Menu::File, true, CTRL, Key::S),
     with_keys(Command::SaveAs, "command.save_as", Menu::File, true, CTRL_SHIFT, Key::S),
     with_keys(Command::SaveVersion, "command.save_version", Menu::File, true, CTRL.plus(Modifiers::ALT), Key::S),
+    entry(Command::Download, "command.download", Menu::File, true),
     with_keys(Command::Export, "command.export", Menu::File, true, CTRL, Key::E),
     with_keys(Command::Quit, "command.quit", Menu::File, false, CTRL, Key::Q),
     with_keys(Command::Undo, "command.undo", Menu::Edit, true, CTRL, Key::Z),
@@ -154,6 +158,15 @@ pub static ALL: [Entry; 35] = [
     entry(Command::About, "command.about", Menu::Help, false),
 ];
 
+/// The commands of this platform, in the order of their menus.
+pub fn all() -> impl Iterator<Item = &'static Entry> + Clone {
+    ALL.iter().filter(|entry| match entry.command {
+        Command::Download => platform::IS_PAGE,
+        Command::Quit | Command::ShowWindows => !platform::IS_PAGE,
+        _ => true,
+    })
+}
+
 impl Command {
     /// The declaration of the command.
     #[must_use]
@@ -168,7 +181,7 @@ pub fn pressed(context: &Context) -> Vec<Command> {
     // Text fields need keys such as Home.
     let is_typing = context.egui_wants_keyboard_input();
     let is_free = |keys: &KeyboardShortcut| !(is_typing && keys.modifiers.is_none() && keys.logical_key == Key::Home);
-    let entries = ALL.iter().flat_map(|entry| entry.shortcuts().map(move |keys| (entry.command, keys)));
+    let entries = all().flat_map(|entry| entry.shortcuts().map(move |keys| (entry.command, keys)));
     let mut entries: Vec<(Command, KeyboardShortcut)> = entries.filter(|(_, keys)| is_free(keys)).collect();
     // Longer combinations first, so that Ctrl+Shift+Z does not trigger Ctrl+Z.
     entries.sort_by_key(|(_, keys)| !(keys.modifiers.shift || keys.modifiers.alt));

@@ -11,6 +11,7 @@ use super::menu::is_enabled;
 use super::purpose::Purpose;
 use crate::catalogue::Language;
 use crate::files;
+use crate::platform;
 use crate::studio::Studio;
 
 /// A dialog for choosing a file.
@@ -107,7 +108,13 @@ impl FileDialog {
                     self.enter(parent);
                 }
                 ui.label(self.folder.display().to_string());
+                if platform::IS_PAGE && !self.purpose.saves() && ui.button(language.text("file.upload")).clicked() {
+                    actions.push(Action::Upload(self.purpose));
+                }
             });
+            if platform::IS_PAGE {
+                ui.weak(language.text("file.kept"));
+            }
             if let Some(failure) = &self.failure {
                 ui.colored_label(ui.visuals().error_fg_color, language.message(failure));
             }
@@ -246,7 +253,7 @@ impl Overwrite {
 #[must_use]
 pub fn ago(when: Option<SystemTime>, language: Language) -> String {
     // A clock that was set back gives a time in the future.
-    let Some(seconds) = when.map(|when| when.elapsed().unwrap_or_default().as_secs()) else { return String::new() };
+    let Some(seconds) = when.map(|when| platform::since(when).as_secs()) else { return String::new() };
     let (key, count) = match seconds {
         0..60 => ("ago.now", 0),
         60..3600 => ("ago.minutes", seconds / 60),
@@ -290,7 +297,7 @@ impl CommandPalette {
                 words.split_whitespace().all(|word| own.contains(word) || english.contains(word))
             };
             let found: Vec<&command::Entry> =
-                command::ALL.iter().filter(is_found).filter(|entry| is_enabled(entry.command, studio)).collect();
+                command::all().filter(is_found).filter(|entry| is_enabled(entry.command, studio)).collect();
             if field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter)) {
                 chosen = found.first().map(|entry| entry.command);
             }
@@ -322,7 +329,7 @@ pub fn shortcuts(context: &Context, language: Language) -> bool {
     window(context, language.text("command.shortcuts"), &mut is_open, vec2(420.0, 460.0), |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             egui::Grid::new("shortcuts").num_columns(2).striped(true).spacing([24.0, 4.0]).show(ui, |ui| {
-                for entry in command::ALL.iter().filter(|entry| entry.keys.is_some()) {
+                for entry in command::all().filter(|entry| entry.keys.is_some()) {
                     ui.label(language.text(entry.name));
                     ui.monospace(entry.keys.map(|keys| ui.ctx().format_shortcut(&keys)).unwrap_or_default());
                     ui.end_row();

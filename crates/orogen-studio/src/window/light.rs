@@ -6,8 +6,28 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use eframe::egui::Context;
 use orogen::gpu::render::LightShader;
 use orogen::output::render::lighting::Lighting;
+use orogen::{Progress, Session};
+use serde::{Deserialize, Serialize};
 
+use crate::platform::{self, Task};
 use crate::studio::Studio;
+
+/// The work for the sky of a sun.
+#[derive(Serialize, Deserialize)]
+pub struct SkyTask {
+    /// Azimuth and elevation, in degrees.
+    sun: [f64; 2],
+}
+
+impl Task for SkyTask {
+    const NAME: &'static str = "sky";
+    const IS_URGENT: bool = true;
+    type Event = Lighting;
+
+    fn run(self, _: &Session, _: &Progress, tell: &(dyn Fn(Lighting) + Send + Sync)) {
+        tell(Lighting::new(self.sun));
+    }
+}
 
 /// What the light of the view depends on, in addition to the sun.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,9 +64,10 @@ impl Light {
         if *known != elevation && self.making.is_none() {
             let (sender, receiver) = channel();
             let context = context.clone();
-            let started = studio.session().start(move |_| {
-                // The view may already be closed.
-                let _ = sender.send((elevation, Lighting::new([azimuth, elevation])));
+            let sky = SkyTask { sun: [azimuth, elevation] };
+            // The view may already be closed.
+            let started = platform::start(&studio.session(), sky, &Progress::none(), move |lighting| {
+                let _ = sender.send((elevation, lighting));
                 context.request_repaint();
             });
             self.making = started.is_ok().then_some(receiver);

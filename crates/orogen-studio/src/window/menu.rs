@@ -18,7 +18,7 @@ pub fn show(ui: &mut Ui, studio: Option<&Studio>, settings: &Settings, language:
     egui::MenuBar::new().ui(ui, |ui| {
         for menu in Menu::ALL {
             ui.menu_button(language.text(menu.name()), |ui| {
-                for entry in command::ALL.iter().filter(|entry| entry.menu == menu) {
+                for entry in command::all().filter(|entry| entry.menu == menu) {
                     let keys = entry.keys.map(|keys| ui.ctx().format_shortcut(&keys)).unwrap_or_default();
                     let mark = is_marked(entry.command, settings);
                     let mut button = egui::Button::selectable(mark, label(entry.command, studio, language));

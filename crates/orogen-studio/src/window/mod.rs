@@ -35,6 +35,8 @@ pub mod menu;
 pub mod mesh;
 pub mod op_groups;
 pub mod open_dialogs;
+#[cfg(target_arch = "wasm32")]
+pub mod page;
 pub mod panels;
 pub mod purpose;
 pub mod ramp_editor;
@@ -45,7 +47,9 @@ pub mod relief_drawing;
 pub mod relief_panel;
 mod relief_part;
 mod relief_pipelines;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod restart;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod run;
 pub mod start_page;
 pub mod status;

@@ -1,16 +1,20 @@
 //! The open dialogs.
 
+use std::sync::mpsc::TryRecvError;
+
 use eframe::egui::Context;
 
 use super::action::Action;
 use super::dialogs::{self, CommandPalette, FileDialog};
 use super::export_dialog::ExportDialog;
+use super::purpose::Purpose;
 use super::ramp_editor::RampEditor;
 use super::recovery_dialog::RecoveryDialog;
 use super::relief_panel::ShownView;
 use super::system_dialog::SystemDialog;
 use super::tour::Tour;
 use crate::catalogue::Language;
+use crate::platform::Chosen;
 use crate::preview::worker::Wake;
 use crate::studio::Studio;
 
@@ -21,6 +25,8 @@ pub struct OpenDialogs {
     pub files: Option<FileDialog>,
     /// The dialog of the system for choosing a file.
     pub system: Option<SystemDialog>,
+    /// A file that arrives from the computer, in a page.
+    pub upload: Option<(Purpose, Chosen)>,
     /// The editor for the colors of the view.
     pub ramp: Option<RampEditor>,
     /// The export dialog.
@@ -50,6 +56,7 @@ impl OpenDialogs {
         let studio = shown.map(|(studio, _)| studio);
         self.recovery.take_if(|recovery| !recovery.show(context, language, actions));
         self.end_system(actions);
+        self.end_upload(language, actions);
         self.files.take_if(|files| !files.show(context, language, actions));
         self.ramp.take_if(|ramp| studio.is_none() || !ramp.show(context, language, actions));
         if let Some(shown) = shown {
@@ -67,6 +74,23 @@ impl OpenDialogs {
     #[must_use]
     pub fn is_choosing(&self) -> bool {
         self.files.is_some() || self.system.is_some()
+    }
+
+    /// Takes a file that has arrived from the computer.
+    fn end_upload(&mut self, language: Language, actions: &mut Vec<Action>) {
+        let Some((purpose, chosen)) = &self.upload else { return };
+        match chosen.try_recv() {
+            Ok(Ok(path)) => {
+                actions.push(Action::of_file(*purpose, path));
+                self.files = None;
+            }
+            Ok(Err(why)) => {
+                self.message = Some((language.text("message.title").into(), language.message(&why).into_owned()));
+            }
+            Err(TryRecvError::Empty) => return,
+            Err(TryRecvError::Disconnected) => {}
+        }
+        self.upload = None;
     }
 
     /// Takes what was chosen in the dialog of the system.

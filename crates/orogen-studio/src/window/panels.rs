@@ -18,6 +18,7 @@ use super::tools::Tools;
 use super::variants_panel::VariantsPanel;
 use super::{analysis_panel, status, theme, tool_row};
 use crate::catalogue::Language;
+use crate::platform;
 use crate::preview::worker::Wake;
 use crate::settings::Settings;
 use crate::settings::layout::{Below, Layout, View};
@@ -145,7 +146,7 @@ impl Panels {
         let Shown { ability, language, .. } = *shown;
         self.tools.begin(ui.ctx());
         tool_row::show(ui, "land", |ui| {
-            for view in View::ALL {
+            for view in View::ALL.into_iter().filter(|view| !platform::IS_PAGE || *view != View::Windows) {
                 if ui.selectable_label(layout.view == view, language.text(view.name())).clicked() {
                     layout.view = view;
                 }

@@ -1,7 +1,7 @@
 //! The 3D view.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use eframe::egui::{self, FontId, Key, PointerButton, Rect, Sense, Slider, Ui, WidgetInfo};
 use eframe::egui_wgpu::Callback;
@@ -13,6 +13,7 @@ use super::relief_drawing::{Ability, Drawing, PictureId, Scene};
 use super::tools::{Projection, Tools};
 use super::{legend, tool_row};
 use crate::catalogue::Language;
+use crate::platform::Instant;
 use crate::preview::contours::suiting;
 use crate::preview::frame::{Frame, Quality};
 use crate::preview::ring::Ring;

@@ -71,6 +71,7 @@ pub fn run() -> ExitCode {
         watch: watch.clone(),
         is_after_loss: arguments.after_loss,
         lose_device: arguments.lose_device,
+        message: None,
     };
     let start = move |context: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, Box<dyn std::error::Error + Send + Sync>> {
         Ok(Box::new(App::new(context, begin)?))

@@ -3,13 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::thread;
-
-use rfd::AsyncFileDialog;
 
 use super::purpose::Purpose;
 use crate::catalogue::Language;
 use crate::files;
+use crate::platform;
 use crate::preview::worker::Wake;
 
 /// An open dialog of the system.
@@ -27,27 +25,17 @@ impl SystemDialog {
         }
         let folder = at.and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
         let folder = folder.map_or_else(files::working_folder, Path::to_path_buf);
-        let dialog = AsyncFileDialog::new()
-            .set_title(language.text(purpose.title()))
-            .set_directory(folder)
-            .add_filter(language.text(purpose.files()), purpose.extensions())
-            .set_can_create_directories(true);
         let name = at.and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
+        let name = purpose.saves().then(|| name.unwrap_or_else(|| "untitled.toml".into()));
         let (sender, chosen) = channel();
         let wake = Arc::clone(wake);
-        // The dialog is opened here, as some systems require; its end is awaited without holding up the window.
         let tell = move |path: Option<PathBuf>| {
             let _ = sender.send(path);
             wake();
         };
-        let started = if purpose.saves() {
-            let open = dialog.set_file_name(name.unwrap_or_else(|| "untitled.toml".into())).save_file();
-            thread::Builder::new().spawn(move || tell(pollster::block_on(open).map(|file| file.path().to_path_buf())))
-        } else {
-            let open = dialog.pick_file();
-            thread::Builder::new().spawn(move || tell(pollster::block_on(open).map(|file| file.path().to_path_buf())))
-        };
-        started.ok().map(|_| SystemDialog { purpose, chosen })
+        let listed = (language.text(purpose.files()), purpose.extensions());
+        let is_open = platform::choose_file(language.text(purpose.title()), &folder, listed, name, tell);
+        is_open.then_some(SystemDialog { purpose, chosen })
     }
 
     /// Its purpose.

@@ -19,6 +19,7 @@ fn frame(session: &Session, request: &Request) -> Arc<Frame> {
             match event {
                 Made::Frame(frame) => last = Some(frame),
                 Made::Failed(error) => panic!("{error}"),
+                Made::Next(_) => {}
                 Made::Done => {}
             }
         }

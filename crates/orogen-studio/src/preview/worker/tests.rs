@@ -19,6 +19,7 @@ fn finish(worker: &mut Worker) -> Vec<Frame> {
         for event in worker.events() {
             match event {
                 Event::Frame(frame) => frames.push(*frame),
+                Event::Next(_) => {}
                 Event::Done => return frames,
                 Event::Failed(error) => panic!("{error}"),
             }

@@ -1,11 +1,13 @@
 //! What each action of the panels and dialogs does.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use eframe::egui::Context;
 use eframe::egui::PanelState;
 
 use super::{App, Pending};
+use crate::platform;
 use crate::settings::layout::Below;
 use crate::window::action::Action;
 use crate::window::ramp_editor::RampEditor;
@@ -29,6 +31,11 @@ impl App {
                 {
                     self.go(pending, context);
                 }
+            }
+            Action::Upload(purpose) => {
+                let wake = Arc::clone(&self.wake);
+                let chosen = platform::choose(purpose.extensions(), move || wake());
+                self.dialogs.upload = chosen.map(|chosen| (purpose, chosen));
             }
             Action::Language(language) => {
                 self.language = language;

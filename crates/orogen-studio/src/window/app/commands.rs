@@ -8,6 +8,7 @@ use super::{App, Pending};
 use crate::editing::edit::Edit;
 use crate::editing::groups;
 use crate::files;
+use crate::platform;
 use crate::settings::layout::{Below, View};
 use crate::window::command::Command;
 use crate::window::dialogs::CommandPalette;
@@ -87,6 +88,9 @@ impl App {
                 Some(path) => drop(self.save(&path)),
                 None => self.save_as(),
             },
+            Command::Download => {
+                platform::download(&format!("{}.toml", studio.document.title()), studio.document.text().as_bytes());
+            }
             Command::Export => self.dialogs.export = ExportDialog::new(studio, &self.panels.relief.shown(studio)),
             Command::Undo => drop(studio.undo()),
             Command::Redo => drop(studio.redo()),
