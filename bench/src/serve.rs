@@ -127,7 +127,7 @@ fn warm(options: &Options) -> Result<f64, String> {
     Ok(counts.iter().sum::<usize>() as f64 / start.elapsed().as_secs_f64())
 }
 
-/// The time within which 99 of 100 answers come, in milliseconds, if 200 a second are asked at times set before.
+/// The time within which 99 of 100 answers come, in milliseconds, to 200 requests a second at times set before.
 fn paced(options: &Options) -> Result<f64, String> {
     const RATE: f64 = 200.0;
     let (server, paths) = warmed()?;

@@ -108,7 +108,7 @@ const PILLOW: &str = "pillow==12.2.0";
 const BLOCKS: &[&str] = &[NUMPY, "nbtlib==2.0.4", "midvoxio==0.1.6", "matplotlib==3.11.2", "trimesh==5.2.0"];
 const MOTO: &str = "moto[server]==5.2.5";
 /// A font with Chinese letters, by a file that it has.
-const CHINESE: (&str, &str) = ("/usr/share/fonts/opentype/noto/NotoSansCJK-Regular.ttc", "fonts-noto-cjk");
+const CHINESE: (&str, &str) = ("/usr/share/fonts/truetype/wqy/wqy-microhei.ttc", "fonts-wqy-microhei");
 const LAYERS: &[&str] = &[NUMPY, RASTERIO, "whitebox-workflows==2.0.6"];
 
 const CLIENTS: &[Client] = &[
@@ -173,7 +173,7 @@ const CLIENTS: &[Client] = &[
             ("/usr/share/doc/mesa-vulkan-drivers/copyright", "mesa-vulkan-drivers"),
             ("/usr/share/doc/libvulkan1/copyright", "libvulkan1"),
             ("/usr/share/doc/libxkbcommon-x11-0/copyright", "libxkbcommon-x11-0"),
-            ("/usr/share/fonts/truetype/wqy/wqy-microhei.ttc", "fonts-wqy-microhei"),
+            CHINESE,
             ("Xvfb", "xvfb"),
             ("xdotool", "xdotool"),
             ("xclip", "xclip"),
@@ -229,7 +229,7 @@ const CLIENTS: &[Client] = &[
         name: "page",
         apt: &[("chromium", "chromium"), ("node", "nodejs"), ("npm", "npm"), CHINESE],
         pip: &[NUMPY, PILLOW, RASTERIO, "trimesh==5.2.0"],
-        npm: &["playwright-core@1.64.1"],
+        npm: &["playwright-core@1.65.1"],
     },
     Client { name: "c", apt: &[("gcc", "gcc"), ("g++", "g++")], pip: &[NUMPY], npm: &[] },
     Client {
@@ -246,12 +246,7 @@ const CLIENTS: &[Client] = &[
     },
     Client {
         name: "web",
-        apt: &[
-            ("node", "nodejs"),
-            ("npm", "npm"),
-            ("chromium", "chromium"),
-            ("/usr/share/fonts/truetype/wqy/wqy-microhei.ttc", "fonts-wqy-microhei"),
-        ],
+        apt: &[("node", "nodejs"), ("npm", "npm"), ("chromium", "chromium"), CHINESE],
         pip: &[NUMPY, PILLOW],
         npm: &["playwright-core@1.65.1"],
     },
@@ -313,7 +308,6 @@ const STEPS: &[&Step] = &[
     &beside("python", "the Python package in a new environment", python::check),
     &beside("book", "the documentation as a site, and the commands of its pages", book::check),
     &beside("remote", "builds, caches and heights in an object store, moto's", || script("remote")),
-    &beside("serve", "GDAL, rasterio, NumPy, xarray and zarrita read what is served", || script("serve")),
     &beside("page", "Chromium drives the map that is served", || script("page")),
     &beside("c", "a program in C reads the samples of an export", || script("c")),
     &beside("vector", "GDAL reads vector tiles, and pmtiles a PMTiles file", || script("vector")),

@@ -1,5 +1,7 @@
 //! The calls, as C makes them: results are those of the library, and wrong arguments are errors with a message.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use std::ffi::{CStr, CString};
 use std::ptr::{null, null_mut};
 

@@ -23,8 +23,11 @@ pub struct Asset {
     kind: &'static str,
     bytes: &'static [u8],
     /// The tag and the compressed bytes, made at the first request.
-    packed: LazyLock<(String, Option<Bytes>), fn() -> (String, Option<Bytes>)>,
+    packed: LazyLock<Packed>,
 }
+
+/// The tag and the compressed bytes of a file.
+type Packed = (String, Option<Bytes>);
 
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 const STYLE: &str = "text/css; charset=utf-8";
@@ -67,7 +70,7 @@ assets! {
 }
 
 /// The tag of a file, and its compressed bytes.
-fn packed(bytes: &[u8]) -> (String, Option<Bytes>) {
+fn packed(bytes: &[u8]) -> Packed {
     let mut packed = Vec::new();
     let written = gzip::start(&mut packed).and_then(|mut gzip| {
         gzip.write_all(bytes)?;

@@ -87,8 +87,8 @@ impl TilePainter {
         TilePainter { colors, encoder: Encoder::new() }
     }
 
-    /// Values and their colors in ascending order, for legends: heights over this range, and those of another layer over
-    /// its own; none if the color does not depend on one number.
+    /// Values and their colors in ascending order, for legends: heights over this range, and those of another layer
+    /// over its own; none if the color does not depend on one number.
     #[must_use]
     pub fn stops(&self, [low, high]: [f32; 2]) -> Vec<(f32, Rgb)> {
         let color = |light: Light| self.encoder.bytes(light);
