@@ -11,8 +11,7 @@ pub const HELP: &str = "
 Usage: cargo xtask web [--quick] [FOLDER]
 
 Builds the studio for WebAssembly and writes FOLDER/studio/ [default: target/web]: index.html, its scripts, and the
-module, compressed. Any host of static files can serve the folder. The module is smaller if `wasm-opt` (Binaryen) is in
-the path.
+module, compressed. Any host of static files can serve the folder.
 
   --quick  a larger module with the same results, built in a fraction of the time, for tests
 
@@ -70,10 +69,6 @@ pub fn build(folder: &Path, profile: Profile) -> Result<PathBuf> {
     let module = built.join(TARGET).join(name).join("studio.wasm");
     shell::run(shell::program(&tool).arg("bind").arg(module).arg(&page))?;
     let module = page.join(MODULE);
-    if profile == Profile::Release && shell::succeeds(shell::program("wasm-opt").arg("--version")) {
-        let mut optimize = shell::program("wasm-opt");
-        shell::run(optimize.args(["-O2", "--all-features", "-o"]).arg(&module).arg(&module))?;
-    }
     shell::run(shell::program(&tool).arg("pack").arg(module))?;
     for file in PAGE {
         let to = page.join(file);
