@@ -10,7 +10,10 @@ import { length, number, rounded, t } from "./texts.js";
 const get = (id) => document.getElementById(id);
 const SVG = "http://www.w3.org/2000/svg";
 /** The size of the chart, in units of its own. */
-const [WIDE, HIGH, LEFT] = [1000, 130, 55];
+const [WIDE, HIGH] = [1000, 130];
+
+/** The room for labels of heights, in pixels. */
+const LABELS = 64;
 
 let corners = [];
 let drawing = false;
@@ -95,17 +98,19 @@ function draw({ distance, values, x, y, length: whole }) {
     complain(new Error(t("profile-outside")));
     return;
   }
+  box.hidden = false;
+  const left = LABELS * WIDE / box.clientWidth;
   const [lowest, highest] = [Math.min(...known), Math.max(...known)];
   const room = Math.max(highest - lowest, 1) * 0.08;
   const [low, high] = [lowest - room, highest + room];
-  const across = (at) => LEFT + (WIDE - LEFT) * at / whole;
+  const across = (at) => left + (WIDE - left) * at / whole;
   const down = (height) => HIGH * (high - height) / (high - low);
   const svg = element("svg", { viewBox: `0 0 ${WIDE} ${HIGH + 20}`, preserveAspectRatio: "none", role: "img" });
   const rise = values.slice(1).reduce((sum, value, k) => sum + Math.max(0, value - values[k]), 0);
   const words = t("profile-words", { length: length(whole), lowest: rounded(lowest), highest: rounded(highest), rise: rounded(rise) });
   svg.append(element("title", {}, words));
   for (const height of [lowest, (lowest + highest) / 2, highest]) {
-    svg.append(element("line", { class: "axis", x1: LEFT, x2: WIDE, y1: down(height), y2: down(height) }));
+    svg.append(element("line", { class: "axis", x1: left, x2: WIDE, y1: down(height), y2: down(height) }));
   }
   let path = "";
   let open = false;
@@ -118,10 +123,10 @@ function draw({ distance, values, x, y, length: whole }) {
   if (open) path += `L${WIDE},${HIGH}Z`;
   if (world.sea_level !== null && world.sea_level > low) {
     const top = Math.max(0, down(world.sea_level));
-    svg.append(element("rect", { class: "sea", x: LEFT, y: top, width: WIDE - LEFT, height: HIGH - top }));
+    svg.append(element("rect", { class: "sea", x: left, y: top, width: WIDE - left, height: HIGH - top }));
   }
   svg.append(element("path", { class: "ground", d: path, "vector-effect": "non-scaling-stroke" }));
-  const at = element("line", { class: "at", x1: -9, x2: -9, y1: 0, y2: HIGH, "vector-effect": "non-scaling-stroke" });
+  const at = element("line", { class: "at", visibility: "hidden", y1: 0, y2: HIGH, "vector-effect": "non-scaling-stroke" });
   svg.append(at);
 
   const line = document.createElement("p");
@@ -132,33 +137,30 @@ function draw({ distance, values, x, y, length: whole }) {
   close.addEventListener("click", () => get("profile-clear").click());
   shown.textContent = words;
   line.append(shown, close);
-  const marks = document.createElement("div");
-  box.replaceChildren(line, svg, marks);
-  box.hidden = false;
+  box.replaceChildren(line, svg);
   say(words);
-  labels(svg, [lowest, highest], down, whole);
+  labels(svg, [lowest, highest], down, whole, left);
 
   const point = (event) => {
     const area = svg.getBoundingClientRect();
-    const share = ((event.clientX - area.left) / area.width * WIDE - LEFT) / (WIDE - LEFT);
+    const share = ((event.clientX - area.left) / area.width * WIDE - left) / (WIDE - left);
     const k = Math.round(Math.min(1, Math.max(0, share)) * (values.length - 1));
-    at.setAttribute("x1", across(distance[k]));
-    at.setAttribute("x2", across(distance[k]));
+    for (const end of ["x1", "x2"]) at.setAttribute(end, across(distance[k]));
+    at.setAttribute("visibility", "visible");
     mark("at", [["", toMap([x[k], y[k]])]]);
     shown.textContent = `${length(distance[k])}: ${values[k] === null ? t("outside") : `${rounded(values[k])} m`}   (${number(x[k])}, ${number(y[k])})`;
   };
   svg.addEventListener("pointermove", point);
   svg.addEventListener("pointerdown", point);
   svg.addEventListener("pointerleave", () => {
-    at.setAttribute("x1", -9);
-    at.setAttribute("x2", -9);
+    at.setAttribute("visibility", "hidden");
     mark("at", []);
     shown.textContent = words;
   });
 }
 
 /** Labels in an SVG without distortion: the chart is stretched, its labels are not. */
-function labels(svg, heights, down, whole) {
+function labels(svg, heights, down, whole, left) {
   const place = () => {
     const area = svg.getBoundingClientRect();
     if (area.width === 0) return;
@@ -168,10 +170,10 @@ function labels(svg, heights, down, whole) {
       const made = element("text", { "text-anchor": anchor, transform: `translate(${x} ${y}) scale(${sx} ${sy})` }, words);
       svg.append(made);
     };
-    for (const height of heights) text(LEFT - 4 * sx, down(height) + 4 * sy, "end", `${rounded(height)} m`);
+    for (const height of heights) text(left - 4 * sx, down(height) + 4 * sy, "end", `${rounded(height)} m`);
     for (const share of [0, 0.25, 0.5, 0.75, 1]) {
       const anchor = share === 0 ? "start" : share === 1 ? "end" : "middle";
-      text(LEFT + (WIDE - LEFT) * share, HIGH + 14 * sy, anchor, length(whole * share));
+      text(left + (WIDE - left) * share, HIGH + 14 * sy, anchor, length(whole * share));
     }
   };
   new ResizeObserver(place).observe(svg);
