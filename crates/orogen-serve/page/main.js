@@ -45,7 +45,10 @@ map.on("moveend", () => {
   get("link").value = location.href;
 });
 // When the map has drawn everything, for programs that drive the page.
-map.on("idle", () => { document.body.dataset.still = "true"; });
+let isColoring = false;
+map.on("idle", () => {
+  if (!isColoring) document.body.dataset.still = "true";
+});
 onMarks((marks) => map.getSource("marks")?.setData(marks));
 
 const redraw = () => {
@@ -59,6 +62,7 @@ let coloring;
 async function recolor() {
   coloring?.abort();
   const mine = coloring = new AbortController();
+  isColoring = true;
   try {
     colors = await ask(`colors/${encodeURIComponent(state.layer)}.json`, state.palette ? { palette: state.palette } : {}, mine.signal);
   } catch (error) {
@@ -66,6 +70,7 @@ async function recolor() {
     colors = { stops: [], classes: [], unit: "" };
     complain(error);
   }
+  isColoring = false;
   showLegend(colors);
   redraw();
 }
