@@ -69,7 +69,8 @@ pub fn build(folder: &Path, profile: Profile) -> Result<PathBuf> {
     let module = built.join(TARGET).join(name).join("studio.wasm");
     shell::run(shell::program(&tool).arg("bind").arg(module).arg(&page))?;
     let module = page.join(MODULE);
-    shell::run(shell::program(&tool).arg("pack").arg(module))?;
+    let pack = if profile == Profile::Quick { "pack" } else { "squeeze" };
+    shell::run(shell::program(&tool).arg(pack).arg(module))?;
     for file in PAGE {
         let to = page.join(file);
         let from = shell::root().join("web/studio/page").join(file);
