@@ -73,6 +73,13 @@ async function drag(page, [x, y], [toX, toY]) {
   await page.mouse.up();
 }
 
+// A click that takes more than a frame, as a hand's does.
+async function click(page, x, y) {
+  await page.mouse.move(x, y);
+  await page.waitForTimeout(400);
+  await page.mouse.click(x, y, { delay: 150 });
+}
+
 async function download(page, act) {
   const [file] = await Promise.all([page.waitForEvent("download", { timeout: PATIENCE }), act()]);
   await file.saveAs(join(folder, file.suggestedFilename()));
@@ -128,7 +135,7 @@ async function run() {
   await page.keyboard.press("Control+E");
   await page.waitForTimeout(800);
   await shot(page, "export");
-  await download(page, () => page.mouse.click(567, 331));
+  await download(page, () => click(page, 567, 331));
   await page.close();
 
   // The other language; a file of the computer; what was saved is still there.
@@ -141,7 +148,7 @@ async function run() {
   await shot(chinese, "open");
   const [chooser] = await Promise.all([
     chinese.waitForEvent("filechooser", { timeout: PATIENCE }),
-    chinese.mouse.click(480, 147),
+    click(chinese, 480, 147),
   ]);
   await chooser.setFiles(join(folder, "other.toml"));
   const other = () => chinese.evaluate(() => localStorage.getItem("orogen:/other.toml"));
