@@ -62,7 +62,6 @@ Builds `orogen` in release mode, installs missing clients and runs every step of
   taplo     taplo validates every recipe against the JSON Schema, and rejects broken ones
   python    the Python package in a new environment: its tests, its types, its generated files
   book      the documentation as a site: every link leads somewhere; the commands and scripts of tutorial, cookbook and engines draw its pictures
-  web       the studio as a page in Chromium: its land, changes, both languages, files; exports have the bytes of the command line
   studio    the studio's tests with Mesa's software Vulkan, and its window under Xvfb in both languages: eleven jobs by mouse and keyboard
   gpu       fields, filters, presets and pictures on a graphics card, or Mesa's software Vulkan, beside the processor's; and without any card
 
@@ -76,6 +75,7 @@ Only if named or with --all, because they take long or need large programs:
   luanti    a Luanti server opens worlds of blocks: the same blocks
   grass     GRASS and gdaldem compute the same derived layers: wetness, insolation, viewshed, landforms ...
   azure     builds, caches and elevation models in Azurite's object store: the bytes of local files
+  web       the studio as a page in Chromium: its land, changes, both languages, files; exports have the bytes of the command line
   faults    clippy on object stores, and builds, caches and elevation models in a store that fails every few requests
   wheel     the same tests of the Python package as the wheel that maturin makes
   nogil     the tests of arrays and worlds from the wheel of the free-threaded python3.14t, in four threads; needs that Python
@@ -333,7 +333,6 @@ const STEPS: &[&Step] = &[
     &beside("formats", "OpenEXR, GDAL, rasterio, Pillow and Godot read exports", || script("formats")),
     &beside("relief", "gdaldem computes the same hillshade, slope and aspect", || script("relief")),
     &beside("taplo", "taplo checks the recipes against the schema", || script("taplo")),
-    &alone("web", "the studio as a page, in Chromium", web),
     &alone("studio", "the studio with software Vulkan, and its window under Xvfb", studio::check),
     &alone("gpu", "terrain and pictures on a graphics card, beside the processor's", gpu::check),
 ];
@@ -350,6 +349,7 @@ const ON_REQUEST: &[&Step] = &[
     &beside("azure", "builds, caches and heights in Azurite's object store", || {
         noted("azure", || script_for("azure", "remote"))
     }),
+    &alone("web", "the studio as a page, in Chromium", || noted("web", web)),
     &alone("faults", "object stores that fail", || noted("faults", remote::check_faults)),
     &alone("wheel", "the Python package as a wheel", || noted("wheel", python::check_wheel)),
     &alone("nogil", "the wheel of the free-threaded Python, in several threads", || {
@@ -378,7 +378,7 @@ pub fn run(args: &[String]) -> Result {
     let mut steps = STEPS.to_vec();
     if is_all || !named.is_empty() {
         // Before the steps that run alone, so that all steps that run in parallel are neighbors.
-        let at = steps.iter().position(|step| step.name == "web").unwrap_or(steps.len());
+        let at = steps.iter().position(|step| step.name == "studio").unwrap_or(steps.len());
         steps.splice(at..at, ON_REQUEST.iter().copied());
     }
     if !named.is_empty() {
