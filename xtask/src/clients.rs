@@ -23,6 +23,7 @@ use std::sync::OnceLock;
 use crate::failure::{Failure, Result};
 use crate::shell::{cargo, program, root, run as sh, target_dir};
 use crate::steps::{self, Step};
+use crate::web_build;
 
 pub const ABOUT: &str = "install other programs and check that they read our files";
 
@@ -421,7 +422,7 @@ pub fn install_wasm() -> Result {
 
 /// Builds the studio as a page, and uses it in a browser.
 fn web() -> Result {
-    let page = crate::web::build(&folder().join("web"), crate::web::Profile::Quick)?;
+    let page = web_build::build(&folder().join("web"), web_build::Profile::Quick)?;
     let work = empty_work("web")?;
     sh(python_script(&install::python(), "web", "web", &work).env("OROGEN_WEB", page))
 }

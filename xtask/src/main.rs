@@ -26,6 +26,7 @@ mod table;
 mod test;
 mod translations;
 mod web;
+mod web_build;
 mod words;
 
 use std::process::ExitCode;

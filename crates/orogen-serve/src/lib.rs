@@ -29,6 +29,7 @@ mod colors;
 mod connection;
 mod describe;
 mod desk;
+mod files;
 mod meshes;
 mod metrics;
 mod objects;

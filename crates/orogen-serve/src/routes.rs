@@ -14,7 +14,9 @@ use axum::routing::get;
 use crate::call::{Call, route};
 use crate::refusal::Refusal;
 use crate::shared::{Client, Shared};
-use crate::{answer, colors, describe, meshes, objects, page, places, points, site, tiles, vector, windows, zarr};
+use crate::{
+    answer, colors, describe, files, meshes, objects, page, places, points, site, tiles, vector, windows, zarr,
+};
 
 /// First parts of paths that no world can have as its name.
 pub const RESERVED: [&str; 24] = [
@@ -91,9 +93,9 @@ pub fn router(shared: &Arc<Shared>) -> Router {
     }
     for part in site::PARTS {
         router = router
-            .route(&format!("/{part}"), get(async move || site::folder(part)))
-            .route(&format!("/{part}/"), route(move |call| site::file(call, part)))
-            .route(&format!("/{part}/{{*path}}"), route(move |call| site::file(call, part)));
+            .route(&format!("/{part}"), get(async move || files::folder(part)))
+            .route(&format!("/{part}/"), route(move |call| files::file(call, part)))
+            .route(&format!("/{part}/{{*path}}"), route(move |call| files::file(call, part)));
     }
     router
         .fallback(async || Refusal::absent("there is no such request; / and /openapi.json list all of them"))
