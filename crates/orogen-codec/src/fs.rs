@@ -1,6 +1,6 @@
 //! File system access. With the feature `fs` this is `std::fs`, extended by objects of a store such as S3.
 //! Without it the module has the same items, but each fails with [`std::io::ErrorKind::Unsupported`]. On WebAssembly
-//! without an operating system, files are in [memory].
+//! without an operating system, files are in memory.
 //!
 //! All libraries of Orogen access files through this module. A host without a file system can therefore run everything
 //! that needs no files, and gets an error that states the reason for everything else.
