@@ -63,6 +63,7 @@ async function recolor() {
   coloring?.abort();
   const mine = coloring = new AbortController();
   isColoring = true;
+  document.body.dataset.still = "false";
   try {
     colors = await ask(`colors/${encodeURIComponent(state.layer)}.json`, state.palette ? { palette: state.palette } : {}, mine.signal);
   } catch (error) {
