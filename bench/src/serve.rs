@@ -42,7 +42,7 @@ const fn case(
 const CASES: &[Case] = &[
     Case { is_rate: true, ..case("warm tiles of 256 x 256, at least", "tiles/s", 1500.0, warm) },
     case("warm tiles at 200/s, 99 of 100 within", "ms", 20.0, paced),
-    case("cold tiles of fields (classic), 99 of 100 within", "ms", 50.0, |options| cold(options, "classic", 16)),
+    case("cold tiles of fields (classic), 99 of 100 within", "ms", 50.0, |options| cold(options, "classic", 18)),
     case("cold tiles of endless, 99 of 100 within", "ms", 400.0, |options| cold(options, "endless", 11)),
     case("10 000 mixed requests, 64 connections, 512 MiB: memory of the process at most", "MiB", 563.2, mixed),
     case("1000 aborted requests: work that is left, at most", "requests", 0.0, aborted),
@@ -209,7 +209,7 @@ fn ask_mixed(address: SocketAddr, count: usize, until: Option<Instant>, seed: u6
     let asked = AtomicUsize::new(0);
     together(MIXED, |k| {
         let mut connection = Connection::open(address)?;
-        let mut random = Random(seed + 0x9e37_79b9_7f4a_7c15 * (k as u64 + 1));
+        let mut random = Random((k as u64 + seed).wrapping_mul(0x9e37_79b9_7f4a_7c15));
         while asked.fetch_add(1, Ordering::Relaxed) < count && until.is_none_or(|until| Instant::now() < until) {
             let path = any(&mut random);
             let (status, body) = connection.get(&path)?;
