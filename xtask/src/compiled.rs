@@ -14,7 +14,8 @@ mod tests {
     use crate::shell;
     use std::collections::{BTreeMap, BTreeSet};
 
-    /// Packages that have other features in [`WINDOW`] on purpose. The test of the header for C compiles `syn` once more.
+    /// Packages that have other features in [`WINDOW`] on purpose. The test of the header for C compiles `syn` once
+    /// more.
     const OTHERS: [&str; 4] = ["orogen", "orogen-cli", "orogen-studio", "syn"];
 
     /// The features of each package of a set: several, if it is compiled several times.
