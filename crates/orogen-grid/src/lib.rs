@@ -66,6 +66,8 @@ pub mod climate;
 pub mod contour;
 pub mod erosion;
 pub mod error;
+#[doc(hidden)]
+pub mod glaciation;
 pub mod grid;
 #[doc(hidden)]
 pub mod hex;

@@ -60,6 +60,8 @@ nodes! {
         FlowDirection,
         FlowIndices,
         Geomorphons,
+        Glaciate,
+        Glaciers,
         Hillshade,
         LocalStreamPower,
         Normal,

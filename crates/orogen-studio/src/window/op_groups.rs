@@ -56,7 +56,10 @@ pub static ALL: [OpGroup; 9] = [
             "extrapolate",
         ],
     ),
-    group("ops.erosion", &["stream-power", "local-stream-power", "pipes", "droplets", "thermal", "soil-depth"]),
+    group(
+        "ops.erosion",
+        &["stream-power", "local-stream-power", "pipes", "droplets", "thermal", "soil-depth", "glaciate", "glaciers"],
+    ),
     group(
         "ops.water",
         &["fill", "breach", "drainage", "lakes", "rivers", "flow-direction", "flow-indices", "height-above-drainage"],
