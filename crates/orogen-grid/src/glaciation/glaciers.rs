@@ -3,7 +3,7 @@
 use super::Glaciated;
 use super::ends::links;
 use crate::error::{Error, ErrorKind, Result};
-use crate::grid::Grid;
+use crate::grid::{Grid, Window};
 use crate::hydrology::direction::{STEPS, strides};
 use crate::parallel;
 use crate::progress::Progress;
@@ -37,6 +37,9 @@ const SHAPE: f64 = 0.8;
 const MIN_SLOPE: f32 = 0.04;
 /// Distance over which the slope is measured, in metres, up and down the valley.
 const SLOPE_LENGTH: f64 = 600.0;
+/// Distance over which thick ice down the valley holds back the ice above it, in metres, and the least slope there.
+const BACKWATER: f64 = 1200.0;
+const MIN_FALL: f32 = 0.01;
 /// Distance in metres up from a glacier from which ground may be under its ice.
 const REACH: f64 = 1800.0;
 /// Ice in km^2 at the end of a glacier, and from which on it is as thick as its slope allows.
@@ -52,7 +55,7 @@ impl Glaciers {
     /// Number of samples around a window that [`Glaciers::run`] reads.
     #[must_use]
     pub fn halo(&self, cell: f64) -> usize {
-        links(REACH, cell) + links(SLOPE_LENGTH, cell) + PASSES + 2
+        links(REACH, cell) + links(BACKWATER, cell) + links(SLOPE_LENGTH, cell) + PASSES + 2
     }
 
     /// The thickness of the ice in metres, 0 where there is none, over a window that is smaller by [`Glaciers::halo`]
@@ -78,30 +81,35 @@ impl Glaciers {
         Ok(thickness.crop(&inner).unwrap_or_else(|| Grid::filled(inner, f32::NAN)))
     }
 
-    /// Height of the ice on the samples that it passes; NaN elsewhere.
+    /// Height of the ice on the samples that it passes; NaN elsewhere. It falls along the valley.
     fn surface_of_lines(&self, land: &Glaciated, progress: &Progress) -> Result<Vec<f32>> {
-        let window = *land.height.window();
-        let (count, heights) = (links(SLOPE_LENGTH, window.cell), land.height.data());
-        let follow = Follow::new(land);
-        let rows = (0..window.height).map(|j| j * window.width..(j + 1) * window.width);
-        let rows = parallel::try_map(rows, |row| {
-            progress.check()?;
-            let surface = row.map(|q| {
-                let ice = land.ice.data()[q] * 1e-6;
-                let Some(first) = follow.next(q).filter(|_| ice >= SIZES[0]) else { return f32::NAN };
-                let (mut at, mut length) = (first.0, first.1);
-                for _ in 1..count {
-                    let Some((next, step)) = follow.next(at) else { break };
-                    (at, length) = (next, length + step);
-                }
-                let slope = ((heights[q] - heights[at]) / length).max(MIN_SLOPE);
-                let thick = (self.stress / (WEIGHT * SHAPE)) as f32 / slope;
-                let size = ((ice - SIZES[0]) / (SIZES[1] - SIZES[0])).clamp(0.0, 1.0).sqrt();
-                heights[q] + thick * size
-            });
-            Ok(surface.collect::<Vec<_>>())
-        })?;
-        Ok(rows.concat())
+        let (window, follow) = (*land.height.window(), Follow::new(land));
+        let count = links(SLOPE_LENGTH, window.cell);
+        let own = along_rows(&window, progress, |q| self.own_surface(land, &follow, q, count))?;
+        let count = links(BACKWATER, window.cell);
+        along_rows(&window, progress, |q| {
+            let (mut at, mut length, mut highest) = (q, 0.0, own[q]);
+            for _ in 0..count {
+                let Some((next, step)) = follow.next(at).filter(|_| !highest.is_nan()) else { break };
+                (at, length) = (next, length + step);
+                highest = highest.max(own[at] + MIN_FALL * length);
+            }
+            highest
+        })
+    }
+
+    /// Height of the ice at a sample by the slope of its own valley.
+    fn own_surface(&self, land: &Glaciated, follow: &Follow, q: usize, count: usize) -> f32 {
+        let (heights, ice) = (land.height.data(), land.ice.data()[q] * 1e-6);
+        let Some((mut at, mut length)) = follow.next(q).filter(|_| ice >= SIZES[0]) else { return f32::NAN };
+        for _ in 1..count {
+            let Some((next, step)) = follow.next(at) else { break };
+            (at, length) = (next, length + step);
+        }
+        let slope = ((heights[q] - heights[at]) / length).max(MIN_SLOPE);
+        let thick = (self.stress / (WEIGHT * SHAPE)) as f32 / slope;
+        let size = ((ice - SIZES[0]) / (SIZES[1] - SIZES[0])).clamp(0.0, 1.0).sqrt();
+        heights[q] + thick * size
     }
 
     /// The thickness of glaciers and firn.
@@ -137,6 +145,16 @@ impl Glaciers {
         })?;
         Ok(out)
     }
+}
+
+/// A value for each sample of a window.
+fn along_rows(window: &Window, progress: &Progress, of: impl Fn(usize) -> f32 + Sync) -> Result<Vec<f32>> {
+    let rows = (0..window.height).map(|j| j * window.width..(j + 1) * window.width);
+    let rows = parallel::try_map(rows, |row| {
+        progress.check()?;
+        Ok(row.map(&of).collect::<Vec<_>>())
+    })?;
+    Ok(rows.concat())
 }
 
 /// Flow directions of a land.
