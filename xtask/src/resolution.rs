@@ -19,17 +19,18 @@ const PAGE: &str = "docs/resolution.md";
 const TEXT: &str = "\
 # Resolution
 
-The table compares each preset at its own cell with the same preset at cells 2, 4 and 8 times as large (`--cell`, `--size`, the levels of
-[chunks](chunks.md)). Written by `cargo xtask resolution`.
+The table compares each preset at its own cell with the same preset at cells 2, 4 and 8 times as large (`--cell`, `--size`, the levels of [chunks](chunks.md)).
+Written by `cargo xtask resolution`.
 
-- *Shared* compares the samples that both grids have: every 2nd, 4th or 8th of the finer grid. Fields and results of solvers are
-  bit-equal there: 0. A filter is computed at the requested cell, so its results differ; `resample` or
-  `bake` [fixes it at one cell](recipes.md#filters-at-a-fixed-cell), as `mesa` does.
+- *Shared* compares the samples that both grids have: every 2nd, 4th or 8th of the finer grid.
+  Fields and results of solvers are bit-equal there: 0.
+  A filter is computed at the requested cell, so its results differ; `resample` or `bake` [fixes it at one cell](recipes.md#filters-at-a-fixed-cell), as `mesa` does.
   A levelled op (`continents`) answers with a coarser level, which has the same rivers and ranges without their finest valleys.
-- *Everywhere* compares all samples of the finer grid with the coarser grid, interpolated with the engine's interpolating
-  cubic. The difference is mostly the detail smaller than two of the larger cells. A border of two large cells is excluded.
-- RMS is the root of the mean squared difference; worst is the largest absolute difference. Both are in metres and, in brackets, as a share of the
-  relief, the difference between the highest and the lowest sample.
+- *Everywhere* compares all samples of the finer grid with the coarser grid, interpolated with the engine's interpolating cubic.
+  The difference is mostly the detail smaller than two of the larger cells.
+  A border of two large cells is excluded.
+- RMS is the root of the mean squared difference; worst is the largest absolute difference.
+  Both are in metres and, in brackets, as a share of the relief, the difference between the highest and the lowest sample.
 - Slopes depend on the cell: the same terrain is less steep at larger cells.
 
 | preset | cell | requested cell | shared, RMS | shared, worst | everywhere, RMS | everywhere, worst |

@@ -1,7 +1,7 @@
 //! The lines of glaciers: the samples that ice passes, with their beds.
 
 use super::{Glaciated, Glaciation, MIN_ICE};
-use crate::grid::Grid;
+use crate::grid::{Grid, Window};
 use crate::hydrology::direction::{STEPS, strides};
 use crate::multiscale::gradient_noise::noise;
 use crate::multiscale::hash;
@@ -86,24 +86,11 @@ impl Beds {
 
     /// The lines with beds that depend on their own ice alone.
     fn found(glaciation: &Glaciation, land: &Glaciated) -> Beds {
-        let window = land.height.window();
-        let (width, height) = (window.width, window.height);
-        let (heights, ice) = (land.height.data(), land.ice.data());
-        let mut node_of = vec![NOWHERE; window.len()];
-        let mut sample = Vec::new();
-        for j in 1..height.saturating_sub(1) {
-            for q in j * width + 1..((j + 1) * width).saturating_sub(1) {
-                let code = land.receiver.data()[q];
-                if (0.0..8.0).contains(&code) && ice[q] >= MIN_ICE * 1e6 && heights[q].is_finite() {
-                    node_of[q] = sample.len() as u32;
-                    sample.push(q);
-                }
-            }
-        }
-        let steps = strides(width);
+        let (node_of, sample) = samples_of(land);
+        let steps = strides(land.height.width());
         let downstream = |q: usize| q.wrapping_add_signed(steps[land.receiver.data()[q] as usize & 7]);
         let receiver: Vec<u32> = sample.iter().map(|q| node_of[downstream(*q)]).collect();
-        let ice: Vec<f32> = sample.iter().map(|q| ice[*q] * 1e-6).collect();
+        let ice: Vec<f32> = sample.iter().map(|q| land.ice.data()[*q] * 1e-6).collect();
         let mut donor = vec![NOWHERE; sample.len()];
         for (node, to) in receiver.iter().enumerate() {
             if let Some(donor) = donor.get_mut(*to as usize)
@@ -112,33 +99,14 @@ impl Beds {
                 *donor = node as u32;
             }
         }
-        let seed = glaciation.seed;
-        let depth = |q: usize, ice: f64| {
-            let [east, south] = [window.east(q % width), window.south(q / width)].map(|metres| metres * 1e-3);
-            let length = (1.5 * libm::pow(ice, 0.25)).clamp(1.5, 7.0);
-            let wavelength = if length < 2.0 {
-                1.0
-            } else if length < 4.0 {
-                2.0
-            } else {
-                4.0
-            };
-            let share = libm::log2(length / wavelength);
-            let at = |wavelength: f64, stream| noise(seed, stream, east / wavelength, south / wavelength);
-            let varied = 0.6 * ((1.0 - share) * at(wavelength, 60) + share * at(2.0 * wavelength, 60));
-            let varied = (1.0 + varied + 0.3 * noise(seed, 61, east / 15.0, south / 15.0)).max(0.1);
-            let depth = glaciation.depth * libm::pow(ice, DEPTH_EXPONENT);
-            (depth * MAX_DEPTH / (depth + MAX_DEPTH) * varied) as f32
-        };
         let half: Vec<f32> = ice.iter().map(|ice| glaciation.half_width(*ice)).collect();
         let nodes = sample.iter().zip(&ice).zip(&half);
         let bed = nodes.map(|((q, ice), half)| {
-            let confined = confinement(land.height, *q, *half);
-            heights[*q] - depth(*q, f64::from(*ice)) * confined
+            let depth = depth(glaciation, land.height.window(), *q, f64::from(*ice));
+            land.height.data()[*q] - depth * confinement(land.height, *q, *half)
         });
         let bed = bed.collect();
-        let nodes = sample.len();
-        let (aside, cirque) = (vec![[0.0; 2]; nodes], vec![0.0; nodes]);
+        let (aside, cirque) = (vec![[0.0; 2]; sample.len()], vec![0.0; sample.len()]);
         Beds { sample, receiver, donor, ice, bed, half, aside, cirque }
     }
 
@@ -254,6 +222,40 @@ impl Beds {
     }
 }
 
+/// The samples that ice passes, and the node of each sample or [`NOWHERE`]. Samples on the border have none.
+fn samples_of(land: &Glaciated) -> (Vec<u32>, Vec<usize>) {
+    let (width, height) = (land.height.width(), land.height.height());
+    let mut node_of = vec![NOWHERE; land.height.data().len()];
+    let mut sample = Vec::new();
+    for j in 1..height.saturating_sub(1) {
+        for q in j * width + 1..((j + 1) * width).saturating_sub(1) {
+            let flows = (0.0..8.0).contains(&land.receiver.data()[q]);
+            if flows && land.ice.data()[q] >= MIN_ICE * 1e6 && land.height.data()[q].is_finite() {
+                node_of[q] = sample.len() as u32;
+                sample.push(q);
+            }
+        }
+    }
+    (node_of, sample)
+}
+
+/// Depth below the river at a sample, by its ice in km^2 and noise, in metres.
+fn depth(glaciation: &Glaciation, window: &Window, q: usize, ice: f64) -> f32 {
+    let place = [window.east(q % window.width), window.south(q / window.width)].map(|metres| metres * 1e-3);
+    let noise = |wavelength: f64, stream| {
+        let [east, south] = place.map(|km| km / wavelength);
+        noise(glaciation.seed, stream, east, south)
+    };
+    // Basins of larger glaciers are longer. Wavelengths between powers of two are mixed of two noises.
+    let length = (1.5 * libm::pow(ice, 0.25)).clamp(1.5, 7.0);
+    let wavelength = [4.0, 2.0].into_iter().find(|wavelength| length >= *wavelength).unwrap_or(1.0);
+    let share = libm::log2(length / wavelength);
+    let basins = (1.0 - share) * noise(wavelength, BASINS) + share * noise(2.0 * wavelength, BASINS);
+    let varied = (1.0 + 0.6 * basins + 0.3 * noise(15.0, REGIONS)).max(0.1);
+    let depth = glaciation.depth * libm::pow(ice, DEPTH_EXPONENT);
+    (depth * MAX_DEPTH / (depth + MAX_DEPTH) * varied) as f32
+}
+
 /// How much the sides of a valley confine its glacier, 0 to 1: where the ground is level, ice spreads and erodes little.
 fn confinement(heights: &Grid, q: usize, half: f32) -> f32 {
     let (width, cell) = (heights.width(), heights.window().cell as f32);
@@ -267,6 +269,10 @@ fn confinement(heights: &Grid, q: usize, half: f32) -> f32 {
     let rise = (around.iter().sum::<f32>() * 0.125 - heights.data()[q]).max(0.0);
     rise / (rise + CONFINING)
 }
+
+/// The streams of the noise of depths.
+const BASINS: u64 = 60;
+const REGIONS: u64 = 61;
 
 /// The depth in hashes of glaciers. No level has this depth.
 pub const DEPTH: usize = 78;

@@ -113,6 +113,7 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ("droplets", "lifetime") => Value::Number(7.5 * world.cell),
             ("droplets", "radius") => Value::Number(2.2 * world.cell),
             ("droplets", "density") => Value::Number(1e6 / (world.cell * world.cell)),
+            ("glaciate", "max_width") => Value::Number(9.0 * world.cell),
             ("select-height", "range") => pair(-0.1, 0.1),
             ("select-height", "falloff") => pair(0.3, 0.2),
             ("select-flow", "range") => pair(0.02, 0.1),
@@ -166,13 +167,23 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             }
         });
     }
-    if spec.op == "flow-direction" {
-        // The op reads codes of directions, 0 to 8.
+    // Ops that read codes of directions, 0 to 8, and the number of that input.
+    let codes = match spec.op {
+        "flow-direction" => Some(0),
+        "glaciate" | "glaciers" => Some(1),
+        _ => None,
+    };
+    if let Some(input) = codes {
         let (from, to) = ([-0.5, 0.5], [0.0, 8.5]);
         recipe.add("codes", Remap { source: Input::from("soft"), from, to, clamp: true });
+        // The ice of glaciers, in m^2.
+        recipe.add("ice", Remap { source: Input::from("in0"), to: [-1e6, 2e7], ..Remap::default() });
         recipe.change(|node| {
             if node.spec().op == spec.op {
-                node.set_input(0, Input::from("codes"));
+                node.set_input(input, Input::from("codes"));
+                if spec.inputs.get(2).is_some_and(|input| input.name == "ice") {
+                    node.set_input(2, Input::from("ice"));
+                }
             }
         });
     }
