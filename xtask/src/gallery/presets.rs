@@ -13,6 +13,8 @@ fn part(preset: &str) -> &'static str {
     match preset {
         // A window in its mountains.
         "continent" => "16824,23480,400,400",
+        // Glaciers and cirques.
+        "glaciers" => "430,540,400,400",
         // The whole world.
         "caves" => "0,0,384,384",
         _ => "100,100,400,400",
@@ -43,8 +45,7 @@ pub fn write(preset: &str, images: &Path) -> Result {
 /// The page with the pictures of all presets.
 pub fn page(presets: &[(&str, &str)]) -> Result {
     let mut page = String::from(
-        "# Gallery\n\nEvery preset with its defaults: a map of the whole world, and the shaded relief of a part of it without colors (light from the north-west at\n\
-         45 degrees elevation; one pixel per sample at the world's own cell), which shows artifacts that colors hide.\n\nWritten by `cargo xtask gallery`.\n\n\
+        "# Gallery\n\nEvery preset with its defaults: a map of the whole world, and the shaded relief of a part of it without colors (light from the north-west at 45 degrees elevation; one pixel per sample at the world's own cell), which shows artifacts that colors hide.\n\nWritten by `cargo xtask gallery`.\n\n\
          | preset | map | shaded relief |\n|---|---|---|\n",
     );
     for (name, about) in presets {

@@ -2,7 +2,7 @@
 
 use super::{Glaciated, Glaciation, MIN_ICE};
 use crate::grid::{Grid, Window};
-use crate::hydrology::direction::{STEPS, strides};
+use crate::hydrology::direction::{DISTANCES, STEPS, strides};
 use crate::multiscale::gradient_noise::noise;
 use crate::multiscale::hash;
 
@@ -137,8 +137,7 @@ impl Beds {
                 }
                 let q = self.sample[node];
                 let code = land.receiver.data()[q] as usize & 7;
-                let (east, south) = STEPS[code];
-                let length = ((east * east + south * south) as f32).sqrt() * cell as f32;
+                let length = (DISTANCES[code] * cell) as f32;
                 (heights[q] - heights[self.sample[to as usize]]).max(0.0) + GRADE * length
             })
             .collect();
@@ -209,7 +208,7 @@ impl Beds {
                 let last = path[path.len() - 1];
                 path.push(if self.receiver[last] == NOWHERE { last } else { self.receiver[last] as usize });
             }
-            let base = smoothed[path[links]].max(smoothed[node] - 0.5 * radius);
+            let base = smoothed[path[links]].max(smoothed[node] - 0.35 * radius);
             let tarn = if hash::unit16(bits, 2) < 0.3 { 16.0 * hash::unit16(bits, 3) } else { -4.0 };
             for (step, &node) in path[..links].iter().enumerate() {
                 let lip = if step + 1 < links { tarn } else { 0.0 };
@@ -261,7 +260,8 @@ fn confinement(heights: &Grid, q: usize, half: f32) -> f32 {
     let (width, cell) = (heights.width(), heights.window().cell as f32);
     let (column, row) = ((q % width) as isize, (q / width) as isize);
     let around = STEPS.map(|(east, south)| {
-        let steps = (half.min(AROUND) / cell / ((east * east + south * south) as f32).sqrt()).round().max(1.0) as isize;
+        let length = if east * south == 0 { cell } else { std::f32::consts::SQRT_2 * cell };
+        let steps = (half.min(AROUND) / length).round().max(1.0) as isize;
         let [i, j] = [column + steps * east, row + steps * south];
         let (i, j) = (i.clamp(0, width as isize - 1), j.clamp(0, heights.height() as isize - 1));
         heights.data()[j as usize * width + i as usize]

@@ -4,7 +4,7 @@ use super::Glaciated;
 use super::ends::links;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
-use crate::hydrology::direction::{STEPS, strides};
+use crate::hydrology::direction::{DISTANCES, strides};
 use crate::parallel;
 use crate::progress::Progress;
 
@@ -49,7 +49,9 @@ const FIRN_LINE: f32 = 200.0;
 /// Slopes on which firn becomes thinner, and from which on there is none.
 const FIRN_SLOPES: [f32; 2] = [0.6, 0.95];
 /// Passes in which the surface becomes smooth.
-const PASSES: usize = 4;
+const PASSES: usize = 8;
+/// The greatest slope of ice above ground or ice beside it.
+const MAX_SLOPE: f32 = 0.6;
 
 impl Glaciers {
     /// Number of samples around a window that [`Glaciers::run`] reads.
@@ -167,7 +169,7 @@ struct Follow<'a> {
 impl Follow<'_> {
     fn new<'a>(land: &Glaciated<'a>) -> Follow<'a> {
         let cell = land.height.window().cell as f32;
-        let lengths = STEPS.map(|(east, south)| ((east * east + south * south) as f32).sqrt() * cell);
+        let lengths = DISTANCES.map(|distance| distance as f32 * cell);
         Follow { receiver: land.receiver, steps: strides(land.height.width()), lengths }
     }
 
@@ -184,31 +186,32 @@ impl Follow<'_> {
     }
 }
 
-/// The thickness after a pass in which the surface of the ice becomes smooth.
+/// The thickness after a pass in which the surface of the ice becomes smooth, and not too steep.
 fn levelled(ground: &Grid, thickness: &Grid, progress: &Progress) -> Result<Grid> {
     let (width, height) = (ground.width(), ground.height());
+    let rise = MAX_SLOPE * ground.window().cell as f32;
+    let (steps, rises) = (strides(width), DISTANCES.map(|distance| rise * distance as f32));
     let mut out = thickness.clone();
     let rows = out.data_mut().chunks_mut(width.max(1)).enumerate().skip(1).take(height.saturating_sub(2));
     parallel::try_for_each(rows, |(j, row)| {
         progress.check()?;
-        let at = |q: usize| (ground.data()[q], thickness.data()[q]);
         for i in 1..width.saturating_sub(1) {
             let q = j * width + i;
-            let (here, thick) = at(q);
+            let (here, thick) = (ground.data()[q], thickness.data()[q]);
             if thick <= 0.0 {
                 continue;
             }
-            let (mut sum, mut count) = (0.0, 0.0);
-            for next in [q - width - 1, q - width, q - width + 1, q - 1, q + 1, q + width - 1, q + width, q + width + 1]
-            {
-                let (ground, thick) = at(next);
+            let (mut sum, mut count, mut bound) = (0.0, 0.0, f32::INFINITY);
+            for (step, rise) in steps.iter().zip(rises) {
+                let next = q.wrapping_add_signed(*step);
+                let (surface, thick) = (ground.data()[next] + thickness.data()[next], thickness.data()[next]);
+                bound = bound.min(surface + rise);
                 if thick > 0.0 {
-                    (sum, count) = (sum + ground + thick, count + 1.0);
+                    (sum, count) = (sum + surface, count + 1.0);
                 }
             }
-            if count > 0.0 {
-                row[i] = (0.5 * (here + thick) + 0.5 * sum / count - here).max(0.0);
-            }
+            let mean = if count > 0.0 { 0.5 * (here + thick) + 0.5 * sum / count } else { here + thick };
+            row[i] = (mean.min(bound) - here).max(0.0);
         }
         Ok(())
     })?;

@@ -38,7 +38,7 @@ pub struct Glaciation {
 impl Default for Glaciation {
     /// The defaults of the op `glaciate`.
     fn default() -> Glaciation {
-        Glaciation { width: 400.0, depth: 80.0, max_width: 2400.0, cirques: 0.4, moraines: 40.0, seed: 0 }
+        Glaciation { width: 400.0, depth: 80.0, max_width: 2400.0, cirques: 0.3, moraines: 40.0, seed: 0 }
     }
 }
 

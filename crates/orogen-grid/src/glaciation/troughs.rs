@@ -15,7 +15,7 @@ const STEEPNESS: f32 = 0.6;
 /// Share of the half width that is flat.
 const FLAT: f32 = 0.2;
 /// The same for cirques.
-const CIRQUE_STEEPNESS: f32 = 0.65;
+const CIRQUE_STEEPNESS: f32 = 0.75;
 const CIRQUE_FLAT: f32 = 0.3;
 
 /// Greatest distance of a line from its sample, in samples.

@@ -42,7 +42,7 @@ op! {
         /// Maximum width of a trough.
         max_width: f64 = 2400.0, unit "m", range 0.0 to 1e4;
         /// Share of the heads of glaciers with a cirque.
-        cirques: f64 = 0.4, range 0.0 to 1.0;
+        cirques: f64 = 0.3, range 0.0 to 1.0;
         /// Height of the end moraines of large glaciers.
         moraines: f64 = 40.0, unit "m", range 0.0 to 200.0;
     }
