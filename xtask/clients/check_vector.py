@@ -49,7 +49,7 @@ cell = EQUATOR / (512 << ZOOM)
 heights = numpy.load(export(WORLD, "heights.npy", "--cell", repr(cell), "--window", "0,0,520,520"))
 lines, values = features(first, "contours")
 worst, vertices = 0.0, 0
-for line, height in zip(lines, values["height"]):
+for line, height in zip(lines, values["elevation"]):
     places = shapely.get_coordinates(line)
     columns, rows = places[:, 0] / cell, -places[:, 1] / cell
     inside = (columns > 2) & (columns < 510) & (rows > 2) & (rows < 510)
@@ -60,7 +60,7 @@ for line, height in zip(lines, values["height"]):
 checks.equal("contours: vertices beyond the heights around them", worst, 0.0)
 checks.that("contours: many vertices", vertices > 1000, vertices)
 checks.that("contours: every fifth is an index contour", set(values["index"].tolist()) <= {0, 1, False, True})
-steps = numpy.unique(numpy.diff(numpy.unique(values["height"])))
+steps = numpy.unique(numpy.diff(numpy.unique(values["elevation"])))
 checks.that("contours: one interval", len(steps) == 1, steps)
 
 # Tiles beside each other: their contours cross the line between them at the same places.
@@ -69,7 +69,7 @@ border = 512 * cell
 
 def crossings(file):
     """The places at which contours cross the border, with their heights; the buffer of the tile is read, too."""
-    _, _, geometry, (heights, *_) = pyogrio.raw.read(file, layer="contours", columns=["height"], CLIP="NO")
+    _, _, geometry, (heights, *_) = pyogrio.raw.read(file, layer="contours", columns=["elevation"], CLIP="NO")
     found = set()
     for line, height in zip(shapely.from_wkb(geometry), heights):
         for part in shapely.get_parts(line):
@@ -101,7 +101,7 @@ shapes = [
 expected = shapely.length(shapely.intersection(shapes, whole)).sum()
 rivers, values = features(first, "rivers")
 checks.near("rivers: their length", shapely.length(rivers).sum() / expected, 1, 0.03)
-checks.that("rivers: discharges", (values["discharge"] > 0).all() and (values["order"] >= 1).all())
+checks.that("rivers: discharges", (values["discharge"] > 0).all() and (values["strahler"] >= 1).all())
 server.send_signal(signal.SIGINT)
 checks.equal("it ends in peace", server.wait(60), 0)
 

@@ -97,13 +97,13 @@ const DRAWN = {
     },
     {
       id: "contour-heights", type: "symbol", source: "lines", "source-layer": "contours", filter: ["get", "index"],
-      layout: { "symbol-placement": "line", "symbol-spacing": 350, "text-field": ["to-string", ["get", "height"]], "text-size": 11, "text-max-angle": 30 },
+      layout: { "symbol-placement": "line", "symbol-spacing": 350, "text-field": ["to-string", ["get", "elevation"]], "text-size": 11, "text-max-angle": 30 },
       paint: { "text-color": "#5b4224", ...halo },
     },
   ],
   rivers: () => [{
     id: "rivers", type: "line", source: "lines", "source-layer": "rivers", layout: { "line-cap": "round", "line-join": "round" },
-    paint: { "line-color": WATER, "line-width": ["interpolate", ["linear"], ["coalesce", ["get", "order"], 1], 1, 0.8, 3, 1.6, 6, 3.5] },
+    paint: { "line-color": WATER, "line-width": ["interpolate", ["linear"], ["coalesce", ["get", "strahler"], 1], 1, 0.8, 3, 1.6, 6, 3.5] },
   }],
   lakes: () => [
     { id: "lakes", type: "fill", source: "lines", "source-layer": "lakes", paint: { "fill-color": "#7db4dc" } },

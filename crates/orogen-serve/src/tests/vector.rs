@@ -67,7 +67,7 @@ fn contours_are_at_their_heights() {
     let found = features(&server, "/vector/2/1/1.mvt?grid=world&layers=contours&interval=10", "contours");
     let (mut count, mut index) = (0, 0);
     for Feature { kind, paths, values } in found {
-        let height = values["height"].as_f64().unwrap();
+        let height = values["elevation"].as_f64().unwrap();
         assert_eq!((kind, height % 10.0), (2, 0.0));
         assert_eq!(values["index"], height % 50.0 == 0.0);
         index += usize::from(height % 50.0 == 0.0);
@@ -99,11 +99,11 @@ fn tiles_have_what_the_world_has() {
     assert_eq!(names("/wet/vector/2/1/0.mvt?grid=world&layers=rivers,lakes"), ["lakes", "rivers"]);
     let wet = all("/wet/vector/1/0/0.mvt?grid=world");
     for (layer, kind, fields) in [
-        ("rivers", 2, vec!["area", "discharge", "order", "width"]),
+        ("rivers", 2, vec!["discharge", "drainage_area", "strahler", "width"]),
         ("lakes", 3, vec!["area", "level"]),
         ("summits", 1, vec!["height", "prominence", "rank"]),
         ("objects", 1, vec!["height", "kind", "size", "turn"]),
-        ("contours", 2, vec!["height", "index"]),
+        ("contours", 2, vec!["elevation", "index"]),
     ] {
         assert!(!wet[layer].is_empty(), "{layer}");
         for feature in &wet[layer] {

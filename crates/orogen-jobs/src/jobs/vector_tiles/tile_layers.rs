@@ -33,7 +33,7 @@ pub static CONTOURS: TileLayerSpec = TileLayerSpec {
     name: "contours",
     about: "contour lines, higher ground to their left",
     fields: &[
-        real("height", "elevation", "height, m"),
+        real("elevation", "elevation", "height, m"),
         TileField {
             field: Field {
                 name: "index",
@@ -50,8 +50,8 @@ pub static RIVERS: TileLayerSpec = TileLayerSpec {
     name: "rivers",
     about: "river reaches over land, downstream",
     fields: &[
-        integer("order", "strahler", "Strahler order; none if a part of the catchment was not computed"),
-        real("area", "drainage_area", "drainage area at the end of the reach, m^2"),
+        integer("strahler", "strahler", "Strahler order; none if a part of the catchment was not computed"),
+        real("drainage_area", "drainage_area", "drainage area at the end of the reach, m^2"),
         real("discharge", "discharge", "mean discharge at the end of the reach, m^3/s"),
         real("width", "width", "width at the end of the reach, m"),
     ],
