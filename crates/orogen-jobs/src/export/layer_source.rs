@@ -58,6 +58,12 @@ impl<'w> LayerSource<'w> {
                     // The nodes of the layer must be appended before a world is opened.
                     Made::Nodes(_) => return Err(error),
                 },
+                None if vector_list::named(layer).is_some() => {
+                    let message = format!(
+                        "`{layer}` consists of vector features, not of samples; `orogen export --layer {layer}` writes them to files such as .geojson"
+                    );
+                    return Err(Error::new(ErrorKind::Request, message));
+                }
                 None => {
                     let names: Vec<&str> = (list::all().iter().map(|derived| derived.name))
                         .chain(vector_list::all().iter().map(|layer| layer.name))
