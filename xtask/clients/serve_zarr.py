@@ -2,11 +2,12 @@
 
 import json
 import subprocess
+import sys
 
 import numpy
 import xarray
 import zarr
-from orogen import NODE_BIN, ROOT, build, export
+from orogen import NODE_BIN, ROOT, WORK, build, export
 
 
 def check(checks, base):
@@ -42,6 +43,15 @@ def check(checks, base):
     part = numpy.array(found["part"], numpy.float32).reshape(64, 64)
     checks.that("zarrita: the samples of an export", numpy.array_equal(part, heights[500:564, 480:544]))
     checks.equal("zarrita: the attributes", found["attributes"], {"long_name": "height", "units": "m"})
+
+    # GDAL, in a process of its own: rasterio has another one.
+    heights = numpy.load(export("place.tif", "expected.npy"))
+    for name in (WORK / "place.zarr", f"/vsicurl/{base}place/zarr"):
+        line = [sys.executable, ROOT / "xtask/clients/gdal_zarr.py", f'ZARR:"{name}":/height', WORK / "gdal.npy"]
+        found = json.loads(subprocess.run(line, capture_output=True, check=True, text=True).stdout)
+        checks.that(f"GDAL: the samples of {name}", numpy.load(WORK / "gdal.npy").tobytes() == heights.tobytes())
+        checks.equal("GDAL: the place", found["geotransform"], [599980, 40, 0, 5200020, 0, -40])
+        checks.that("GDAL: the coordinate system", "UTM zone 32N" in found["crs"], found["crs"])
 
     # An unbounded world is a square around its origin.
     with xarray.open_dataset(f"{base}endless/zarr", engine="zarr") as served:

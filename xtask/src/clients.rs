@@ -223,7 +223,16 @@ const CLIENTS: &[Client] = &[
     Client {
         name: "serve",
         apt: &[("node", "nodejs"), ("npm", "npm")],
-        pip: &[NUMPY, RASTERIO, XARRAY, ZARR, "aiohttp==3.14.5", "fsspec==2026.9.0"],
+        pip: &[
+            NUMPY,
+            RASTERIO,
+            XARRAY,
+            ZARR,
+            "aiohttp==3.14.5",
+            "fsspec==2026.9.0",
+            "numcodecs==0.16.6",
+            "pyogrio==0.13.0",
+        ],
         npm: &["zarrita@0.7.5", "@here/quantized-mesh-decoder@1.2.8"],
     },
     Client {
