@@ -233,18 +233,18 @@ impl Walk<'_> {
         }
         self.check_tables(&recipe, "surface", &surfaces, &names, |whole| {
             surface::expand::expand(whole);
-            whole.expanded().iter().map(|it| (it.surface.name.clone(), it.nodes.clone())).collect()
+            whole.expanded().iter().map(|it| (it.surface.name.clone(), it.nodes.clone(), it.share.clone())).collect()
         });
         self.check_tables(&recipe, "scatter", &scatter, &names, |whole| {
             scatter::expand::expand(whole);
             let expanded = whole.scatter().iter().zip(whole.expanded_scatter());
-            expanded.map(|(entry, it)| (entry.name.clone(), it.nodes.clone())).collect()
+            expanded.map(|(entry, it)| (entry.name.clone(), it.nodes.clone(), Some(it.density.clone()))).collect()
         });
         self.check_tables(&recipe, "class", &classes, &names, |whole| {
             // The reason why it cannot have classes was reported above.
             let _ = class::expand::expand(whole);
             let expanded = whole.classes().iter().zip(whole.expanded_classes());
-            expanded.map(|(class, it)| (class.name.clone(), it.nodes.clone())).collect()
+            expanded.map(|(class, it)| (class.name.clone(), it.nodes.clone(), None)).collect()
         });
         match self.is_sound() {
             true => {
@@ -278,15 +278,15 @@ impl Walk<'_> {
     }
 
     /// Reports problems that appear only in the nodes that the tables of a list expand to. `expand` adds these nodes to
-    /// a recipe and returns the name and the nodes of each table. `places` are the positions of the tables, `names` the
-    /// names of nodes in all tables.
+    /// a recipe and returns the name, the nodes and the resulting layer of each table. `places` are the positions of
+    /// the tables, `names` the names of nodes in all tables.
     fn check_tables(
         &mut self,
         written: &Recipe,
         list: &str,
         places: &[Span],
         names: &[(String, Span)],
-        expand: impl Fn(&mut Recipe) -> Vec<(String, Range<usize>)>,
+        expand: impl Fn(&mut Recipe) -> Vec<(String, Range<usize>, Option<String>)>,
     ) {
         if !self.is_sound() || places.is_empty() {
             return;
@@ -297,7 +297,7 @@ impl Walk<'_> {
         let start = |table: usize| places.get(table).map_or(usize::MAX, |span| span.start);
         for diagnostic in Graph::resolve(&whole).err().unwrap_or_default() {
             let at = match diagnostic.at {
-                At::Node(node, _) => nodes.iter().position(|(_, nodes)| nodes.contains(&node)),
+                At::Node(node, _) => nodes.iter().position(|(_, nodes, _)| nodes.contains(&node)),
                 _ => None,
             };
             // A name that is wrong, with a suggestion from the nodes that were written.
@@ -321,6 +321,17 @@ impl Walk<'_> {
                 _ => diagnostic.message,
             };
             self.complain(&span, message);
+        }
+        // A mask that is the only condition is the result itself: no node reads it.
+        for (at, layer) in nodes.iter().enumerate().filter_map(|(at, (.., layer))| Some((at, layer.as_ref()?))) {
+            if Graph::find(&whole, layer).is_err()
+                && let Err(what) = Graph::find(written, layer)
+            {
+                let within = start(at)..start(at + 1);
+                let place = names.iter().find(|(name, span)| name == layer && within.contains(&span.start));
+                let span = place.map(|(_, span)| span).or(places.get(at)).cloned().unwrap_or(0..0);
+                self.complain(&span, format!("{}: {what}", name(at)));
+            }
         }
     }
 

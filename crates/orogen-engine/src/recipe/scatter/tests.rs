@@ -32,6 +32,16 @@ mask = "hills"
 "#;
 
 #[test]
+fn a_mask_that_is_the_only_condition_names_a_node() {
+    let alone = "[[scatter]]\nname = \"tree\"\nspacing = 5\nmask = \"zz\"\n";
+    let error = Recipe::parse(&recipe(alone), "test").unwrap_err();
+    let place = error.diagnostics()[0].place.as_ref().unwrap();
+    assert_eq!((place.text.as_str(), place.column), ("mask = \"zz\"", 8), "{error}");
+    assert!(error.to_string().contains("scatter `tree`: unknown node `zz`"), "{error}");
+    Recipe::parse(&recipe(&alone.replace("zz", "hills")), "test").unwrap();
+}
+
+#[test]
 fn scatter_reads_back_as_it_was_written() {
     let first = Recipe::parse(&recipe(SCATTER), "test").unwrap();
     let again = Recipe::parse(&first.to_toml(), "again").unwrap();

@@ -86,6 +86,13 @@ fn faults_stand_at_their_keys() {
         let from: String = place.text.chars().skip(place.column - 1).collect();
         assert!(from.starts_with(column), "{from} / {column}: {error}");
     }
+    // A mask that is the only condition.
+    let alone =
+        "[[surface]]\nname = \"a\"\ncolor = \"red\"\n[[surface]]\nname = \"b\"\ncolor = \"blue\"\nmask = \"zz\"\n";
+    let error = Recipe::parse(&recipe(SIZE, alone), "test").unwrap_err();
+    let place = error.diagnostics()[0].place.as_ref().unwrap();
+    assert_eq!((place.text.as_str(), place.column), ("mask = \"zz\"", 8), "{error}");
+    assert!(error.to_string().contains("surface `b`: unknown node `zz`; available: `"), "{error}");
     let unbounded = recipe("", &SURFACES.replace(", \"land.a\" = [0, 5]", ""));
     assert!(Recipe::parse(&unbounded, "test").unwrap_err().to_string().contains("`flow` needs a bounded world"));
     let missing = Recipe::parse(&recipe(SIZE, SURFACES), "test").unwrap_err().to_string();
