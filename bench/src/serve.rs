@@ -46,6 +46,8 @@ const CASES: &[Case] = &[
     case("cold tiles of endless, 99 of 100 within", "ms", 400.0, |options| cold(options, "endless", 11)),
     case("10 000 mixed requests, 64 connections, 512 MiB: memory of the process at most", "MiB", 563.2, mixed),
     case("1000 aborted requests: work that is left, at most", "requests", 0.0, aborted),
+    case("10 000 idle connections: growth of memory at most", "MiB", 16.0, idle),
+    case("400 clients that read nothing of 4 MiB, 512 MiB: memory of the process at most", "MiB", 563.2, unread),
     Case { is_long: true, ..case("soak of ten minutes: growth of memory at most", "%", 5.0, soak) },
 ];
 
@@ -248,6 +250,52 @@ fn aborted(options: &Options) -> Result<f64, String> {
         }
         std::thread::sleep(Duration::from_millis(100));
     }
+}
+
+/// By how much the memory grows with connections that ask nothing, or half of a request, in MiB. All are held open, and
+/// others are answered meanwhile.
+fn idle(options: &Options) -> Result<f64, String> {
+    let (server, paths) = warmed()?;
+    let before = server.memory("VmRSS")?;
+    let mut open = Vec::new();
+    for k in 0..if options.repetitions < 9 { 1000 } else { 10_000 } {
+        let mut connection = Connection::open(server.address)?;
+        match k % 3 {
+            0 => connection.send_raw("GET /healthz HTTP/1.1\r\nHost: localhost\r\n")?,
+            1 => connection.send_raw("P")?,
+            _ => {}
+        }
+        open.push(connection);
+        if k % 50 == 0 {
+            fetched(&mut Connection::open(server.address)?, &paths[k / 50 % paths.len()])?;
+        }
+    }
+    let most = server.metric("orogen_connections")?;
+    if most > 512 {
+        return Err(format!("the server has {most} connections"));
+    }
+    let grown = server.memory("VmRSS")?.saturating_sub(before);
+    drop(open);
+    Ok(grown as f64 / f64::from(1 << 20))
+}
+
+/// The largest memory of a server whose clients do not read their answers, in MiB. Others are answered meanwhile.
+fn unread(options: &Options) -> Result<f64, String> {
+    let server = Server::start(&["classic", "--memory", MEMORY])?;
+    let mut open = Vec::new();
+    for k in 0..if options.repetitions < 9 { 40 } else { 400 } {
+        let mut connection = Connection::open(server.address)?;
+        connection.send(&format!("/window.npy?bbox=0,-{0},{0},0&width=1024", 4000 + k))?;
+        open.push(connection);
+        let mut other = Connection::open(server.address)?;
+        let (status, _) = other.get("/height?x=100&y=-100")?;
+        // A full queue is announced, and memory that is needed for answers, too.
+        if ![200, 413, 503].contains(&status) {
+            return Err(format!("a client beside those that do not read: {status}"));
+        }
+    }
+    drop(open);
+    Ok(server.memory("VmHWM")? as f64 / f64::from(1 << 20))
 }
 
 /// By how much the memory grows from the second minute to the tenth, in percent.

@@ -81,8 +81,12 @@ impl Connection {
 
     /// Sends a request, without waiting for the answer.
     pub fn send(&mut self, path: &str) -> Result<(), String> {
-        let request = format!("GET {path} HTTP/1.1\r\nHost: localhost\r\n\r\n");
-        self.stream.get_mut().write_all(request.as_bytes()).map_err(|cause| format!("{path}: {cause}"))
+        self.send_raw(&format!("GET {path} HTTP/1.1\r\nHost: localhost\r\n\r\n"))
+    }
+
+    /// Sends a text, which may be no whole request.
+    pub fn send_raw(&mut self, text: &str) -> Result<(), String> {
+        self.stream.get_mut().write_all(text.as_bytes()).map_err(|cause| format!("{}: {cause}", text.trim()))
     }
 
     /// The status and the body of an answer.

@@ -165,6 +165,16 @@ impl Node {
         self.declared_mut().files()
     }
 
+    /// Whether parameter `i` names a file.
+    #[doc(hidden)]
+    pub fn names_file(&mut self, i: usize) -> bool {
+        self.declared_mut()
+            .params_mut()
+            .get_mut(i)
+            .and_then(|param| param.file_ref())
+            .is_some_and(|file| !file.is_empty())
+    }
+
     /// Checks that parameters do not contradict each other; the error has a key and a message.
     pub fn consistent(&self) -> Result<(), (&'static str, String)> {
         self.declared().consistent()

@@ -14,6 +14,10 @@ use crate::refusal::Refusal;
 /// Texts from this length on are compressed.
 const COMPRESSED: usize = 512;
 
+/// Media types of answers that are computed and much shorter when they are compressed.
+const COMPRESSIBLE: [&str; 3] =
+    ["application/vnd.mapbox-vector-tile", "application/vnd.quantized-mesh", "application/json"];
+
 /// How long an answer may be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Life {
@@ -92,6 +96,14 @@ pub fn part(headers: &HeaderMap, etag: &str, bytes: Bytes, kind: &'static str) -
     Ok(response)
 }
 
+/// A lasting redirect to another address.
+pub fn redirect(address: &str) -> Response {
+    let mut response = bytes("text/plain; charset=utf-8", Bytes::new());
+    *response.status_mut() = StatusCode::PERMANENT_REDIRECT;
+    set(response.headers_mut(), header::LOCATION, address);
+    response
+}
+
 /// Adds the tag, and how long the answer may be used.
 pub fn lasting(response: &mut Response, etag: &str, life: Life, is_private: bool) {
     let life = match (life, is_private) {
@@ -152,6 +164,16 @@ pub fn gzipped(bytes: &[u8]) -> Result<Vec<u8>, Refusal> {
         message: format!("the answer cannot be compressed: {cause}"),
     })?;
     Ok(packed)
+}
+
+/// Whether computed answers of this media type may be compressed.
+pub fn is_compressible(kind: &str) -> bool {
+    COMPRESSIBLE.contains(&kind)
+}
+
+/// Whether an answer of this media type is compressed for a client: it takes gzip and asks for no part.
+pub fn compresses(headers: &HeaderMap, kind: &str) -> bool {
+    is_compressible(kind) && takes_gzip(headers) && !headers.contains_key(header::RANGE)
 }
 
 /// Whether the client takes gzip: it names it, with a weight above 0.

@@ -4,12 +4,13 @@ use std::collections::HashMap;
 use std::future::Future;
 use std::sync::Arc;
 
-use axum::body::Bytes;
+use axum::body::{Body, Bytes};
 use axum::extract::rejection::RawPathParamsRejection;
 use axum::extract::{RawPathParams, State};
 use axum::http::{HeaderMap, Uri, header};
 use axum::response::{IntoResponse, Response};
-use axum::routing::{MethodRouter, get};
+use axum::routing::{MethodRouter, get, post};
+use orogen::Progress;
 use orogen::grid::words;
 use orogen::io::palette::named::{self, Named};
 
@@ -17,6 +18,7 @@ use crate::answer::{self, Life};
 use crate::desk::{Keep, Work};
 use crate::query::{Query, SEED, SET, encoded};
 use crate::refusal::Refusal;
+use crate::sent;
 use crate::served::{Frame, Served};
 use crate::shared::Shared;
 use crate::variants::Change;
@@ -39,32 +41,61 @@ where
     F: Fn(Call) -> A + Clone + Send + Sync + 'static,
     A: Future<Output = Result<Response, Refusal>> + Send,
 {
-    let respond = move |State(shared): State<Arc<Shared>>,
-                        path: Result<RawPathParams, RawPathParamsRejection>,
-                        uri: Uri,
-                        headers: HeaderMap| {
+    let respond = move |State(shared), path, uri: Uri, headers| {
         let answer = answer.clone();
-        async move {
-            let limit = shared.limits.timeout;
-            let answered = async {
-                let path = path.map_err(|_| Refusal::bad("the path is not percent-encoded UTF-8"))?;
-                let parts = path.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
-                let query = Query::parse(uri.query().unwrap_or_default())?;
-                let authority = uri.authority().map(|host| host.as_str().to_string());
-                answer(Call::new(shared, query, headers, parts, authority)).await
-            };
-            let in_time = tokio::time::timeout(limit, answered).await;
-            in_time
-                .unwrap_or_else(|_| {
-                    Err(Refusal::busy(format!(
-                        "the answer takes longer than {} s; send the request again later, ask for fewer samples, or raise --timeout",
-                        limit.as_secs_f64()
-                    )))
-                })
-                .into_response()
-        }
+        async move { answered(shared, path, &uri, headers, answer).await }
     };
     get(respond)
+}
+
+/// A route whose requests have a body.
+pub fn route_of_body<F, A>(answer: F) -> MethodRouter<Arc<Shared>>
+where
+    F: Fn(Call, Body) -> A + Clone + Send + Sync + 'static,
+    A: Future<Output = Result<Response, Refusal>> + Send,
+{
+    let respond = move |State(shared), path, uri: Uri, headers, body| {
+        let answer = answer.clone();
+        async move { answered(shared, path, &uri, headers, |call| answer(call, body)).await }
+    };
+    post(respond)
+}
+
+/// The answer, within the time that it may take.
+async fn answered<A>(
+    shared: Arc<Shared>,
+    path: Result<RawPathParams, RawPathParamsRejection>,
+    uri: &Uri,
+    headers: HeaderMap,
+    answer: impl FnOnce(Call) -> A,
+) -> Response
+where
+    A: Future<Output = Result<Response, Refusal>>,
+{
+    let limit = shared.limits.timeout;
+    let answered = async {
+        let path = path.map_err(|_| Refusal::bad("the path is not percent-encoded UTF-8"))?;
+        let parts = path.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
+        let query = Query::parse(uri.query().unwrap_or_default())?;
+        let authority = uri.authority().map(|host| host.as_str().to_string());
+        answer(Call::new(shared, query, headers, parts, authority)).await
+    };
+    let in_time = tokio::time::timeout(limit, answered).await;
+    let late = || {
+        Err(Refusal::busy(format!(
+            "the answer takes longer than {} s; send the request again later, ask for fewer samples, or raise --timeout",
+            limit.as_secs_f64()
+        )))
+    };
+    in_time.unwrap_or_else(|_| late()).into_response()
+}
+
+/// Work whose result is compressed, unless it is empty.
+fn gzipped(work: Work) -> Work {
+    Box::new(move |progress| {
+        let bytes = work(progress)?;
+        if bytes.is_empty() { Ok(bytes) } else { Ok(answer::gzipped(&bytes)?.into()) }
+    })
 }
 
 impl Call {
@@ -112,7 +143,13 @@ impl Call {
         // Names are only ever looked up, never part of a path in the file system.
         let asked = self.part("world");
         let found = worlds.iter().find(|world| world.name == asked).cloned();
-        found.ok_or_else(|| {
+        found.or_else(|| self.shared.recipes.find(asked)).ok_or_else(|| {
+            if self.shared.limits.allows_recipes && sent::is_name(asked) {
+                return Refusal::absent(format!(
+                    "no recipe `{asked}` is kept; the server keeps the last {} that were used: send it to /recipes again",
+                    sent::MAX_KEPT
+                ));
+            }
             let hint = match words::nearest(asked, names()) {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => format!("there are {}", words::list(names())),
@@ -151,6 +188,12 @@ impl Call {
             };
             Refusal::bad(format!("no palette is called `{name}`; {hint}"))
         })
+    }
+
+    /// Samples that a request may have.
+    pub fn max_samples(&self, served: &Served) -> usize {
+        let most = self.shared.limits.samples;
+        if served.is_sent { most.min(sent::MAX_SAMPLES) } else { most }
     }
 
     /// Whether answers are for this client only.
@@ -209,6 +252,9 @@ impl Call {
         kind: &'static str,
         work: impl AsyncFnOnce() -> Result<Work, Refusal>,
     ) -> Result<Response, Refusal> {
+        let compresses = answer::compresses(&self.headers, kind);
+        let plain = key;
+        let key = if compresses { format!("gzip {plain}") } else { plain.clone() };
         let tag = answer::etag(&[key.as_bytes()]);
         let (life, is_private) = (self.life(served), self.is_private());
         if answer::is_known(&self.headers, &tag) {
@@ -219,11 +265,22 @@ impl Call {
             Some(bytes) => bytes,
             None => {
                 let _seat = desk.seat()?;
-                let work = work().await?;
+                let work = match desk.cached(&plain).filter(|_| compresses) {
+                    Some(bytes) => Box::new(move |_: &Progress| Ok(bytes)),
+                    None => work().await?,
+                };
+                let work = if compresses { gzipped(work) } else { work };
                 desk.get(key, keep, || work).await?
             }
         };
+        let is_compressed = compresses && !bytes.is_empty();
         let mut response = answer::part(&self.headers, &tag, bytes, kind)?;
+        if answer::is_compressible(kind) {
+            answer::set(response.headers_mut(), header::VARY, "accept-encoding");
+        }
+        if is_compressed {
+            answer::set(response.headers_mut(), header::CONTENT_ENCODING, "gzip");
+        }
         answer::lasting(&mut response, &tag, life, is_private);
         Ok(response)
     }

@@ -66,7 +66,7 @@ pub async fn fitted(
         }) as Work
     };
     let name = palette.map_or("", |named| named.name);
-    call.shared.desk.get(format!("fit {} {} {layer} {name}", served.name, served.version), Keep::Work, work).await?;
+    call.shared.desk.get(format!("fit {} {} {layer} {name}", served.name, served.version), served.keep(), work).await?;
     let missing = || Refusal::busy("the layer is being prepared; send the request again");
     served.ready_map(layer, palette).ok_or_else(missing)
 }

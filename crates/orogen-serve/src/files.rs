@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use axum::body::Bytes;
-use axum::http::{HeaderName, StatusCode, header};
+use axum::http::{HeaderName, header};
 use axum::response::Response;
 
 use crate::answer::{self, Life};
@@ -59,10 +59,7 @@ pub async fn file(call: Call, part: &'static str) -> Result<Response, Refusal> {
 
 /// `/studio` and `/book`: the addresses of their files are relative to the folder.
 pub fn folder(part: &str) -> Response {
-    let mut response = answer::bytes("text/plain; charset=utf-8", Bytes::new());
-    *response.status_mut() = StatusCode::PERMANENT_REDIRECT;
-    answer::set(response.headers_mut(), header::LOCATION, &format!("{part}/"));
-    response
+    answer::redirect(&format!("{part}/"))
 }
 
 /// The media type of a file, by its extension.

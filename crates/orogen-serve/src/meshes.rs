@@ -1,6 +1,6 @@
 //! `/mesh`: quantized-mesh tiles for globes such as Cesium, and their description.
 
-use axum::http::{HeaderMap, HeaderValue, header};
+use axum::http::{HeaderMap, header};
 use axum::response::Response;
 use orogen::builder::tile_grid::MAX_ZOOM;
 use orogen::grid::hex;
@@ -86,22 +86,16 @@ pub async fn tile(call: Call) -> Result<Response, Refusal> {
         json!({ "geometricerror": mesh_tiles::max_error(at.zoom), "available": levels }).to_string()
     };
     let extensions = Extensions { normals: has(NORMALS), metadata: has(METADATA).then(below) };
-    let takes_gzip = answer::takes_gzip(&call.headers);
-    let key = format!("mesh {} {} {at:?} {extensions:?} {takes_gzip}", served.name, hex::encode(&fingerprint));
+    let key = format!("mesh {} {} {at:?} {extensions:?}", served.name, hex::encode(&fingerprint));
     let (world, budget) = (served.world().clone(), served.session().budget().clone());
     let work = async || {
         Ok(Box::new(move |progress: &orogen::Progress| {
             let _scratch = budget.reserve(mesh_tiles::SCRATCH)?;
-            let bytes = MeshTiles::new(&world).tile(at, &extensions, progress)?;
-            Ok(if takes_gzip { answer::gzipped(&bytes)? } else { bytes }.into())
+            Ok(MeshTiles::new(&world).tile(at, &extensions, progress)?.into())
         }) as Work)
     };
     let mut response = call.worked(&served, (key, Keep::Tile), KIND, work).await?;
-    let headers = response.headers_mut();
-    headers.insert(header::VARY, HeaderValue::from_static("accept, accept-encoding"));
-    if takes_gzip {
-        headers.insert(header::CONTENT_ENCODING, HeaderValue::from_static("gzip"));
-    }
+    answer::set(response.headers_mut(), header::VARY, "accept, accept-encoding");
     Ok(response)
 }
 
@@ -140,6 +134,7 @@ fn extensions(parameter: Option<&str>, headers: &HeaderMap) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use axum::http::HeaderValue;
 
     #[test]
     fn extensions_are_read() {

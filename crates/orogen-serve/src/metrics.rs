@@ -8,6 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use orogen::Session;
 
 use crate::desk::Desk;
+use crate::peers::Peers;
 
 /// Upper ends of the classes of durations, in seconds.
 const ENDS: [f64; 12] = [0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 60.0];
@@ -36,7 +37,7 @@ impl Metrics {
     }
 
     /// The text.
-    pub fn text(&self, desk: &Desk, session: &Session) -> String {
+    pub fn text(&self, desk: &Desk, peers: &Peers, session: &Session) -> String {
         let routes = self.0.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let mut text = String::new();
         let head = |name: &str, kind: &str, about: &str| format!("# HELP {name} {about}\n# TYPE {name} {kind}\n");
@@ -74,6 +75,19 @@ impl Metrics {
                 "counter",
                 "Requests refused because the queue was full",
                 total(&desk.counts.refused),
+            ),
+            ("orogen_connections", "gauge", "Open connections", peers.count() as u64),
+            (
+                "orogen_connections_displaced_total",
+                "counter",
+                "Idle connections that were closed for new ones",
+                total(&peers.displaced),
+            ),
+            (
+                "orogen_connections_refused_total",
+                "counter",
+                "Connections refused because all others were busy",
+                total(&peers.refused),
             ),
             ("orogen_workers_busy", "gauge", "Workers that compute", desk.busy() as u64),
             ("orogen_work_pending", "gauge", "Pieces of work that wait or run", desk.pending() as u64),

@@ -58,7 +58,7 @@ pub async fn geojson(call: Call) -> Result<Response, Refusal> {
         call.query.pairs().filter(|(name, value)| options(layer).any(|spec| spec.name == *name) && !value.is_empty());
     let options = Options::of(options(layer), given)?;
     let window = chosen(&call, &served)?;
-    check_samples(&call, &window)?;
+    check_samples(&call, &served, &window)?;
     let Some(format) = registry::named("geojson") else {
         return Err(Refusal::absent("no format is called geojson"));
     };

@@ -5,7 +5,7 @@ use std::io::Write as _;
 use std::sync::LazyLock;
 
 use axum::body::Bytes;
-use axum::http::{HeaderValue, StatusCode, header};
+use axum::http::{HeaderValue, header};
 use axum::response::Response;
 use orogen_codec::format::gzip;
 
@@ -114,11 +114,8 @@ pub async fn folder(call: Call) -> Result<Response, Refusal> {
     let served = call.served()?;
     let pairs = call.query.pairs().map(|(name, value)| format!("{}={}", encoded(name), encoded(value)));
     let query = pairs.collect::<Vec<_>>().join("&");
-    let mut response = answer::bytes("text/plain; charset=utf-8", Bytes::new());
-    *response.status_mut() = StatusCode::PERMANENT_REDIRECT;
-    let address = if query.is_empty() { format!("{}/", served.name) } else { format!("{}/?{query}", served.name) };
-    answer::set(response.headers_mut(), header::LOCATION, &address);
-    Ok(response)
+    let query = if query.is_empty() { query } else { format!("?{query}") };
+    Ok(answer::redirect(&format!("{}/{query}", served.name)))
 }
 
 /// `/{world}/`.

@@ -50,6 +50,12 @@ impl Query {
         Err(Refusal::bad(format!("this request has no parameter `{name}`; {hint}")))
     }
 
+    /// The parameters without those of these names, in upper or lower case.
+    pub fn without(&self, names: &[&str]) -> Query {
+        let is_kept = |name: &str| !names.iter().any(|other| other.eq_ignore_ascii_case(name));
+        Query(self.0.iter().filter(|(name, _)| is_kept(name)).cloned().collect())
+    }
+
     /// [`Query::only`] for requests that are answered for variants.
     ///
     /// # Errors

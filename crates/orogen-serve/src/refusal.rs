@@ -8,6 +8,9 @@ use serde_json::json;
 /// Seconds after which a client may try again.
 const RETRY: u32 = 2;
 
+/// Maximum length of a word of a message, in characters.
+const LONGEST_WORD: usize = 400;
+
 /// Why a request has no answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refusal {
@@ -58,6 +61,15 @@ impl Refusal {
     }
 }
 
+/// A message without what is too long to be a word in it, which a request can have.
+fn shortened(message: &str) -> String {
+    let short = |word: &str| match word.char_indices().nth(LONGEST_WORD) {
+        Some((end, _)) => word[..end].to_string() + "...",
+        None => word.to_string(),
+    };
+    message.split(' ').map(short).collect::<Vec<_>>().join(" ")
+}
+
 impl From<Error> for Refusal {
     fn from(error: Error) -> Refusal {
         Refusal::of(&error)
@@ -66,7 +78,7 @@ impl From<Error> for Refusal {
 
 impl IntoResponse for Refusal {
     fn into_response(self) -> Response {
-        let body = json!({ "error": self.message }).to_string();
+        let body = json!({ "error": shortened(&self.message) }).to_string();
         let mut response = (self.status, body).into_response();
         let headers = response.headers_mut();
         headers.insert(header::CONTENT_TYPE, HeaderValue::from_static("application/json"));

@@ -11,15 +11,15 @@ use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 
-use crate::call::{Call, route};
+use crate::call::{Call, route, route_of_body};
 use crate::refusal::Refusal;
 use crate::shared::{Client, Shared};
 use crate::{
-    answer, colors, describe, files, meshes, objects, page, places, points, site, tiles, vector, windows, zarr,
+    answer, colors, describe, files, meshes, objects, page, places, points, recipes, site, tiles, vector, windows, zarr,
 };
 
 /// First parts of paths that no world can have as its name.
-pub const RESERVED: [&str; 24] = [
+pub const RESERVED: [&str; 25] = [
     "tiles",
     "terrarium",
     "terrain-rgb",
@@ -44,6 +44,7 @@ pub const RESERVED: [&str; 24] = [
     "studio",
     "world",
     "recipe",
+    "recipes",
 ];
 
 /// Path of the check that the server lives, which needs no token.
@@ -59,6 +60,7 @@ pub fn router(shared: &Arc<Shared>) -> Router {
         .route(HEALTH, get(async || "ok\n"))
         .route("/metrics", route(metrics))
         .route("/openapi.json", route(describe::openapi::openapi))
+        .route("/recipes", route_of_body(recipes::post).fallback(recipes::other))
         .route("/{world}", route(page::folder))
         .route("/{world}/", route(page::world));
     // A single world has short paths, too.
@@ -110,7 +112,7 @@ pub fn router(shared: &Arc<Shared>) -> Router {
 /// `/metrics`.
 async fn metrics(call: Call) -> Result<Response, Refusal> {
     call.query.only(&[])?;
-    let text = call.shared.metrics.text(&call.shared.desk, &call.shared.session);
+    let text = call.shared.metrics.text(&call.shared.desk, &call.shared.peers, &call.shared.session);
     answer::text(&call.headers, "text/plain; version=0.0.4; charset=utf-8", &text, call.is_private())
 }
 
@@ -163,7 +165,7 @@ async fn around(State(shared): State<Arc<Shared>>, request: Request, next: Next)
     let is_open = |path: &str| path == HEALTH || OPEN.contains(&path.split('/').nth(1).unwrap_or_default());
     let is_allowed = is_asked || is_open(request.uri().path()) || is_allowed(&shared, &request);
     let mut response = match (is_asked, is_allowed) {
-        (true, _) => asked(),
+        (true, _) => asked(shared.limits.allows_recipes),
         (false, true) => next.run(request).await,
         (false, false) => Refusal {
             status: StatusCode::UNAUTHORIZED,
@@ -174,7 +176,7 @@ async fn around(State(shared): State<Arc<Shared>>, request: Request, next: Next)
     let headers = response.headers_mut();
     for (name, value) in [
         (header::ACCESS_CONTROL_ALLOW_ORIGIN, "*"),
-        (header::ACCESS_CONTROL_EXPOSE_HEADERS, "etag, retry-after, x-orogen-window"),
+        (header::ACCESS_CONTROL_EXPOSE_HEADERS, "etag, location, retry-after, x-orogen-window"),
         (HeaderName::from_static("x-content-type-options"), "nosniff"),
     ] {
         headers.insert(name, HeaderValue::from_static(value));
@@ -185,11 +187,15 @@ async fn around(State(shared): State<Arc<Shared>>, request: Request, next: Next)
 }
 
 /// The answer to a browser that asks what another site's page may request.
-fn asked() -> Response {
+fn asked(allows_recipes: bool) -> Response {
     let mut response = StatusCode::NO_CONTENT.into_response();
     let headers: &mut HeaderMap = response.headers_mut();
-    headers.insert(header::ACCESS_CONTROL_ALLOW_METHODS, HeaderValue::from_static("GET, HEAD, OPTIONS"));
-    headers.insert(header::ACCESS_CONTROL_ALLOW_HEADERS, HeaderValue::from_static("authorization, if-none-match"));
+    let (methods, names) = match allows_recipes {
+        true => ("GET, HEAD, POST, OPTIONS", "authorization, content-type, if-none-match"),
+        false => ("GET, HEAD, OPTIONS", "authorization, if-none-match"),
+    };
+    headers.insert(header::ACCESS_CONTROL_ALLOW_METHODS, HeaderValue::from_static(methods));
+    headers.insert(header::ACCESS_CONTROL_ALLOW_HEADERS, HeaderValue::from_static(names));
     headers.insert(header::ACCESS_CONTROL_MAX_AGE, HeaderValue::from_static("86400"));
     response
 }

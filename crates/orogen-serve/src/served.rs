@@ -17,11 +17,19 @@ use orogen::world::HEIGHT;
 use orogen::{Error, Progress, Recipe, Result, Sampler, Session, Window, World};
 use sha2::{Digest, Sha256};
 
+use crate::desk::Keep;
+use crate::recent::Recent;
+use crate::sent;
+
 /// Side of a tile in pixels, unless its name ends with `@2x`.
 pub const TILE: usize = 256;
 
 /// Zooms beyond the one of the world's own cell that descriptions list: fields have detail at any cell.
 const DEEPER: u32 = 3;
+
+/// Variants of a world that are kept open, and those of a world whose recipe a client sent.
+const MAX_VARIANTS: usize = 16;
+const MAX_VARIANTS_SENT: usize = 4;
 
 /// A grid of tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,8 +83,10 @@ pub struct Served {
     maps: Mutex<HashMap<[String; 2], Arc<MapTiles>>>,
     samplers: Mutex<HashMap<String, Arc<Sampler<Arc<World>>>>>,
     vector: Arc<VectorTiles>,
+    /// Whether a client sent its recipe.
+    pub is_sent: bool,
     /// Variants that were requested last.
-    pub variants: Mutex<Vec<(String, Arc<Served>)>>,
+    pub variants: Recent<Served>,
     /// The levels of its Zarr store, once it was requested.
     pub zarr: OnceLock<Vec<ZarrLayout>>,
     /// Changes with anything that an answer depends on.
@@ -109,7 +119,8 @@ impl Served {
             derived: Mutex::default(),
             maps: Mutex::default(),
             samplers: Mutex::default(),
-            variants: Mutex::default(),
+            is_sent: false,
+            variants: Recent::new(MAX_VARIANTS),
             zarr: OnceLock::new(),
             version: String::new(),
         };
@@ -123,6 +134,33 @@ impl Served {
         }
         served.version = hex::encode(&hash.finalize())[..16].to_string();
         Ok(served)
+    }
+
+    /// Opens a recipe that a client sent.
+    ///
+    /// # Errors
+    /// If it is not valid, or beyond the [limits](sent::check) of such recipes.
+    pub fn sent(name: &str, session: &Session, recipe: Recipe) -> Result<Served> {
+        let opened = Served::new(name, session, recipe, false)?;
+        sent::check(&opened.world)?;
+        Ok(Served { is_sent: true, variants: Recent::new(MAX_VARIANTS_SENT), ..opened })
+    }
+
+    /// The same world with another recipe.
+    ///
+    /// # Errors
+    /// If it is not valid.
+    pub fn changed(&self, recipe: Recipe) -> Result<Served> {
+        match self.is_sent {
+            true => Served::sent(&self.name, &self.session, recipe),
+            false => Served::new(&self.name, &self.session, recipe, self.is_place),
+        }
+    }
+
+    /// What becomes of work that later requests need, too, if nobody waits for it any more: that of recipes of clients
+    /// ends with the clients, so that it takes no longer than their requests may.
+    pub fn keep(&self) -> Keep {
+        if self.is_sent { Keep::Nothing } else { Keep::Work }
     }
 
     /// The recipe.

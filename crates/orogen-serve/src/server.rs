@@ -13,7 +13,10 @@ use orogen::{Error, ErrorKind, Recipe, Result, Session};
 use crate::connection;
 use crate::desk::Desk;
 use crate::metrics::Metrics;
+use crate::peers::Peers;
+use crate::recent::Recent;
 use crate::routes::{RESERVED, router};
+use crate::sent;
 use crate::served::Served;
 use crate::shared::{GRACE, Limits, Log, Shared};
 use crate::site::Site;
@@ -31,12 +34,17 @@ const OPTIONS: &[OptionSpec] = &[
     OptionSpec::new("queue", "N", ValueKind::Whole(1, 100_000))
         .with_about("Requests that may wait for others; more are answered with 503")
         .with_default("256"),
+    OptionSpec::new("connections", "N", ValueKind::Whole(1, 100_000))
+        .with_about("Open connections; a new one closes the one that is idle for the longest time")
+        .with_default("512"),
     OptionSpec::new("max-samples", "N", ValueKind::Whole(1, 1_000_000_000_000))
         .with_about("Samples that a window may have")
         .with_default("16777216"),
     OptionSpec::new("timeout", "S", ValueKind::Number(0.1, 86_400.0))
         .with_about("Seconds that an answer may take; then it is 503, and its work is cancelled unless others wait for it")
         .with_default("120"),
+    OptionSpec::new(sent::OPTION, "", ValueKind::Nothing)
+        .with_about("Take recipes from clients, as the body of `POST /recipes`; they cannot name files"),
     OptionSpec::new("web", "FOLDER", ValueKind::File)
         .with_about("Folder that `cargo xtask web` and `cargo xtask book` make: the studio at /studio/, the book at /book/"),
 ];
@@ -96,6 +104,8 @@ impl Server {
             samples: options.whole("max-samples").map_or(1 << 24, |count| usize::try_from(count).unwrap_or(usize::MAX)),
             timeout: Duration::from_secs_f64(options.number("timeout").unwrap_or(120.0)),
             queue: options.whole("queue").unwrap_or(256) as usize,
+            connections: options.whole("connections").unwrap_or(512) as usize,
+            allows_recipes: options.has(sent::OPTION),
         };
         let port = options.whole("port").unwrap_or(8080) as u16;
         let site = options.file("web").map(Site::of).transpose()?.unwrap_or_default();
@@ -194,7 +204,9 @@ impl Server {
         budget.reserve(cache)?.keep();
         Ok(Shared {
             worlds: self.worlds,
+            recipes: Recent::new(sent::MAX_KEPT),
             desk: Arc::new(Desk::new(self.session.threads(), self.limits.queue, cache as usize)),
+            peers: Arc::new(Peers::new(self.limits.connections)),
             limits: self.limits,
             site: self.site,
             metrics: Metrics::default(),

@@ -8,6 +8,8 @@ use orogen::Session;
 
 use crate::desk::Desk;
 use crate::metrics::Metrics;
+use crate::peers::Peers;
+use crate::recent::Recent;
 use crate::served::Served;
 use crate::site::Site;
 
@@ -21,6 +23,9 @@ pub struct Limits {
     pub samples: usize,
     pub timeout: Duration,
     pub queue: usize,
+    pub connections: usize,
+    /// Whether clients may send recipes.
+    pub allows_recipes: bool,
 }
 
 /// Receives lines of the log.
@@ -29,7 +34,10 @@ pub type Log = Box<dyn Fn(&str) + Send + Sync>;
 /// What all requests share.
 pub struct Shared {
     pub worlds: Vec<Arc<Served>>,
+    /// Worlds of recipes that clients sent, by their names.
+    pub recipes: Recent<Served>,
     pub desk: Arc<Desk>,
+    pub peers: Arc<Peers>,
     pub limits: Limits,
     pub site: Site,
     pub metrics: Metrics,

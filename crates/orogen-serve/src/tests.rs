@@ -1,10 +1,12 @@
 //! Tests of the whole server, over loopback.
 
+mod abuse;
 mod bad_requests;
 mod client;
 mod descriptions;
 mod meshes;
 mod page;
+mod recipes;
 mod samples;
 mod site;
 mod variants;

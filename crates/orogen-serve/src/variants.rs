@@ -9,10 +9,7 @@ use axum::http::StatusCode;
 
 use crate::query::{Query, SEED, SET};
 use crate::refusal::Refusal;
-use crate::served::{Served, lock};
-
-/// Variants of a world that are kept open.
-const MAX_VARIANTS: usize = 16;
+use crate::served::Served;
 
 /// Maximum number of numbers that differ.
 const MAX_VALUES: usize = 64;
@@ -73,7 +70,7 @@ impl Served {
     pub fn variant(&self, change: &Change) -> Result<Arc<Served>, Refusal> {
         // Numbers in their shortest form are different for different bits.
         let key = format!("{change:?}");
-        if let Some(found) = self.opened(&key) {
+        if let Some(found) = self.variants.find(&key) {
             return Ok(found);
         }
         let wrong = |error: orogen::Error| match Refusal::of(&error) {
@@ -82,26 +79,7 @@ impl Served {
             refusal => refusal,
         };
         let recipe = self.recipe().with_values(change.seed, &change.values).map_err(wrong)?;
-        let opened = Arc::new(Served::new(&self.name, self.session(), recipe, self.is_place).map_err(wrong)?);
-        let mut variants = lock(&self.variants);
-        // Another request may have opened it meanwhile.
-        if let Some((_, found)) = variants.iter().find(|(own, _)| *own == key) {
-            return Ok(Arc::clone(found));
-        }
-        variants.push((key, Arc::clone(&opened)));
-        let excess = variants.len().saturating_sub(MAX_VARIANTS);
-        variants.drain(..excess);
-        Ok(opened)
-    }
-
-    /// An open variant; it becomes the latest one.
-    fn opened(&self, key: &str) -> Option<Arc<Served>> {
-        let mut variants = lock(&self.variants);
-        let at = variants.iter().position(|(own, _)| own == key)?;
-        let found = variants.remove(at);
-        let opened = Arc::clone(&found.1);
-        variants.push(found);
-        Some(opened)
+        Ok(self.variants.keep(&key, self.changed(recipe).map_err(wrong)?))
     }
 }
 

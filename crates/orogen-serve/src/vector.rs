@@ -70,5 +70,5 @@ async fn found(call: &Call, served: &Arc<Served>) -> Result<(), Refusal> {
             Ok(Bytes::new())
         }) as Work
     };
-    call.shared.desk.get(format!("features {} {}", served.name, served.version), Keep::Work, work).await.map(drop)
+    call.shared.desk.get(format!("features {} {}", served.name, served.version), served.keep(), work).await.map(drop)
 }

@@ -55,7 +55,7 @@ pub async fn window(call: Call, format: &'static Format) -> Result<Response, Ref
     let (options, layer_options) = options(&call, format, &layer)?;
     served.world_of_options(&layer, &layer_options)?;
     let window = chosen(&call, &served)?;
-    check_samples(&call, &window)?;
+    check_samples(&call, &served, &window)?;
     let fingerprint = hex::encode(&served.fingerprint(&layer).unwrap_or_default());
     let key = format!("window.{name} {} {fingerprint} {window:?} {}", served.name, call.query.text());
     let (session, mut recipe) = (served.session().clone(), served.recipe().clone());
@@ -137,8 +137,8 @@ impl std::io::Write for Growing<'_> {
 ///
 /// # Errors
 /// If they are too many.
-pub fn check_samples(call: &Call, window: &Window) -> Result<(), Refusal> {
-    let most = call.shared.limits.samples;
+pub fn check_samples(call: &Call, served: &Served, window: &Window) -> Result<(), Refusal> {
+    let most = call.max_samples(served);
     if window.len() <= most {
         return Ok(());
     }

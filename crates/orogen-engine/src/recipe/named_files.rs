@@ -28,6 +28,12 @@ impl Recipe {
         files.iter().flat_map(|path| open::files(path)).chain(self.used.iter().cloned()).collect()
     }
 
+    /// Whether nodes or surfaces name files: all that [`Recipe::load`] would read.
+    pub(super) fn names_files(&mut self) -> bool {
+        let mut files = self.nodes.iter_mut().flat_map(|named| named.node.files());
+        files.any(|file| !file.is_empty()) || self.surfaces.iter().any(|surface| surface.picture().is_some())
+    }
+
     /// Reads the files that its nodes name. Each is read only once; their heights together take at most `allowed`
     /// bytes. Of large files of heights, requests read the windows that they need, unless results are stored: then all
     /// heights are needed for the keys of the results. If a solver reads a file of more than half of `allowed` bytes,

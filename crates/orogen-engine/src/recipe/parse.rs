@@ -1,11 +1,11 @@
 //! Conversion of a tree of values to a recipe, with diagnostics at their keys.
 
 use super::class::list::CLASSES;
-use super::document::{MAX_NODES, Recipe, VERSION, WorldSpec};
+use super::document::{Recipe, VERSION, WorldSpec};
 use super::graph::{At, Graph, MAX_FAULTS};
 use super::parameters::{Formula, Parameters, Step, resolve};
 use super::scatter::list::SCATTERS;
-use super::subgraph::{Origin, UseDiagnostic, Uses, take_in};
+use super::subgraph::{NO_FILES, Origin, UseDiagnostic, Uses, take_in};
 use super::surface::list::SURFACES;
 use super::table::list::List;
 use super::table::reader::ValueReader;
@@ -86,6 +86,8 @@ pub(super) fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Orig
     let walk = Walk {
         text: &text,
         registry: origin.registry(),
+        max_nodes: origin.max_nodes(),
+        reads_files: origin.reads_files(),
         diagnostics: Vec::new(),
         more: 0,
         places: HashMap::new(),
@@ -102,6 +104,9 @@ struct Walk<'a> {
     text: &'a Text<'a>,
     /// The ops that nodes may have.
     registry: &'a Registry,
+    max_nodes: usize,
+    /// Whether nodes and surfaces may name files.
+    reads_files: bool,
     diagnostics: Vec<Diagnostic>,
     /// Number of diagnostics beyond the limit.
     more: usize,
@@ -188,6 +193,11 @@ impl Walk<'_> {
         let surfaces = tables(top, &SURFACES, &mut values, |surface| _ = recipe.surface(surface));
         let scatter = tables(top, &SCATTERS, &mut values, |entry| _ = recipe.add_scatter(entry));
         let classes = tables(top, &CLASSES, &mut values, |class| _ = recipe.add_class(class));
+        if !self.reads_files {
+            let named = recipe.surfaces().iter().zip(&surfaces).filter(|(surface, _)| surface.picture().is_some());
+            let places: Vec<Span> = named.map(|(_, place)| place.clone()).collect();
+            places.iter().for_each(|place| self.complain(place, format!("`picture` is a file; {NO_FILES}")));
+        }
         let ValueReader { mut names, diagnostics, .. } = values;
         // A problem of a node is reported at the first name in the text that it is about.
         names.sort_by_key(|(_, span)| span.start);
@@ -246,6 +256,10 @@ impl Walk<'_> {
             let expanded = whole.classes().iter().zip(whole.expanded_classes());
             expanded.map(|(class, it)| (class.name.clone(), it.nodes.clone(), None)).collect()
         });
+        // Whatever names a file, it is not read: the checks above only say where it is.
+        if !self.reads_files && self.is_sound() && recipe.names_files() {
+            self.complain(&(0..0), format!("a file is named; {NO_FILES}"));
+        }
         match self.is_sound() {
             true => {
                 recipe.set_used(uses.files);
@@ -377,10 +391,11 @@ impl Walk<'_> {
             );
             return Ok(());
         };
-        if entries.len() > MAX_NODES {
+        let most = self.max_nodes;
+        if entries.len() > most {
             return Err(self.text.error(
-                &entries[MAX_NODES].0.span,
-                format!("this recipe has {} nodes; at most {MAX_NODES} are allowed", entries.len()),
+                &entries[most].0.span,
+                format!("this recipe has {} nodes; at most {most} are allowed", entries.len()),
             ));
         }
         let mut names: HashSet<&str> = HashSet::with_capacity(entries.len());
@@ -443,6 +458,10 @@ impl Walk<'_> {
             } else if let Some(i) = spec.param_named(&key.value) {
                 self.places.insert((index, key.value.clone()), value.span.clone());
                 match node.set_param(i, &value.value) {
+                    Ok(()) if !self.reads_files && node.names_file(i) => {
+                        self.complain(&value.span, format!("`{}` is a file; {NO_FILES}", key.value));
+                        sound = false;
+                    }
                     Ok(()) => {
                         self.remember(&mut node, value);
                         if let Shape::Expression = spec.params[i].shape {

@@ -51,6 +51,18 @@ impl Registry {
         self.parse_with(text, name, &[])
     }
 
+    /// [`Registry::parse`] for a text from anywhere: it must not name files, neither in parameters nor in surfaces nor
+    /// as recipes that it uses, and has at most `nodes` nodes, also with the presets that it uses. No file is opened or
+    /// looked up.
+    ///
+    /// # Errors
+    /// As [`Registry::parse`], and if it names a file.
+    #[doc(hidden)]
+    pub fn parse_without_files(&self, text: &str, name: &str, nodes: usize) -> Result<Recipe> {
+        let shared = Shared::without_files(self, parse, nodes);
+        parse(text, name, &[], &Origin::text(&shared))
+    }
+
     /// [`Registry::parse`] with other values for some of the recipe's parameters.
     ///
     /// # Errors

@@ -23,6 +23,9 @@ use std::path::{Path, PathBuf};
 /// Maximum number of recipes that a recipe uses, directly and indirectly.
 pub const MAX_USES: usize = 256;
 
+/// The reason why a name of a file is refused.
+pub const NO_FILES: &str = "this recipe may use presets, but no file of this machine and no address";
+
 /// The origin of a recipe during reading.
 pub struct Origin<'a> {
     /// The folder of relative paths; `None` for a text without a file.
@@ -40,6 +43,10 @@ pub type Parse = fn(&str, &str, &[(String, f64)], &Origin) -> Result<Recipe>;
 pub struct Shared<'a> {
     uses: Cell<usize>,
     bytes: Cell<u64>,
+    /// Maximum number of nodes.
+    nodes: usize,
+    /// Whether they may name files.
+    reads_files: bool,
     /// The ops that all of them may use.
     registry: &'a Registry,
     /// The parser of used recipes, the same as for the first one.
@@ -49,7 +56,13 @@ pub struct Shared<'a> {
 impl<'a> Shared<'a> {
     /// The state before the first recipe is read.
     pub fn new(registry: &'a Registry, parse: Parse) -> Shared<'a> {
-        Shared { uses: Cell::new(MAX_USES), bytes: Cell::new(LONGEST_TEXT), registry, parse }
+        let (uses, bytes) = (Cell::new(MAX_USES), Cell::new(LONGEST_TEXT));
+        Shared { uses, bytes, nodes: MAX_NODES, reads_files: true, registry, parse }
+    }
+
+    /// The state before a recipe of at most `nodes` nodes is read that must not name files.
+    pub fn without_files(registry: &'a Registry, parse: Parse, nodes: usize) -> Shared<'a> {
+        Shared { nodes: nodes.min(MAX_NODES), reads_files: false, ..Shared::new(registry, parse) }
     }
 }
 
@@ -57,6 +70,16 @@ impl<'a> Origin<'a> {
     /// The ops that recipes may use.
     pub fn registry(&self) -> &'a Registry {
         self.shared.registry
+    }
+
+    /// Maximum number of nodes of all recipes together.
+    pub fn max_nodes(&self) -> usize {
+        self.shared.nodes
+    }
+
+    /// Whether recipes may name files.
+    pub fn reads_files(&self) -> bool {
+        self.shared.reads_files
     }
 
     /// The origin of a text without a file.
@@ -83,6 +106,9 @@ impl<'a> Origin<'a> {
             return fault(format!(
                 "there is no preset `{name}`; {hint} A file is named with its extension, such as \"{name}.toml\""
             ));
+        }
+        if preset.is_none() && !self.reads_files() {
+            return fault(format!("`{name}` is a file; {NO_FILES}"));
         }
         let path = fs::joined(&self.folder.clone().unwrap_or_default(), name);
         let known = preset.map_or_else(|| known_as(&path), |preset| preset.name.to_string());
@@ -254,8 +280,9 @@ fn include(
             _ => UseDiagnostic::There(error),
         }
     })?;
-    if recipe.nodes().len() + used.nodes().len() > MAX_NODES {
-        let message = format!("with this recipe there would be more than {MAX_NODES} nodes");
+    let most = origin.max_nodes();
+    if recipe.nodes().len() + used.nodes().len() > most {
+        let message = format!("with this recipe there would be more than {most} nodes");
         return Err(here(&name.span, message));
     }
     for (key, _) in &asked.inputs {

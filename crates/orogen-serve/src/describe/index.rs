@@ -93,6 +93,9 @@ fn world_body(call: &Call, served: &Served) -> Result<String, Refusal> {
     ] {
         let _ = writeln!(body, "<tr><td>{what}<td><a href=\"{address}\"><code>{address}</code></a></tr>");
     }
+    if call.shared.limits.allows_recipes {
+        body += "<tr><td>A recipe of your own, as the body of a POST<td><code>/recipes</code></tr>\n";
+    }
     body += "</table>\n<h2>Layers</h2>\n<table><tr><th>Layer<th>Description<th>Tiles</tr>\n";
     for layer in served.layers() {
         let (path, _) = tiles_of(&layer.name);

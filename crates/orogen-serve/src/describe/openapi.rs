@@ -14,6 +14,7 @@ use crate::places::CELL;
 use crate::points::MAX_ALONG;
 use crate::query::{SEED, SET};
 use crate::refusal::Refusal;
+use crate::sent;
 use crate::vector;
 use crate::windows;
 
@@ -38,6 +39,9 @@ pub async fn openapi(call: Call) -> Result<Response, Refusal> {
         ("/openapi.json", "This description", "application/json"),
     ] {
         paths.insert(path.into(), operation("", path, about, kind, Vec::new()));
+    }
+    if call.shared.limits.allows_recipes {
+        paths.insert("/recipes".into(), sending());
     }
     let mut text = json!({
         "openapi": "3.1.0",
@@ -240,6 +244,42 @@ fn of_option(spec: &OptionSpec) -> Parameter {
     (spec.name, json!({ "type": "string" }), spec.about)
 }
 
+/// The answer of an error.
+fn error(about: &str) -> Value {
+    let schema = json!({ "$ref": "#/components/schemas/Error" });
+    json!({ "description": about, "content": { "application/json": { "schema": schema } } })
+}
+
+/// `POST /recipes`.
+fn sending() -> Value {
+    let properties = json!({
+        "name": { "type": "string", "description": "Name of the world in paths: `/{world}/...`" },
+        "url": { "type": "string", "description": "Address of its map" },
+        "about": { "type": "string" },
+        "version": { "type": "string" },
+        "layers": { "type": "array", "items": { "type": "string" } },
+    });
+    let made = |about: &str| json!({ "description": about, "content": { "application/json": { "schema": { "type": "object", "properties": properties } } } });
+    let text = json!({ "schema": { "type": "string", "maxLength": sent::MAX_BYTES } });
+    json!({ "post": {
+        "summary": "Serves the world of a recipe that cannot name files",
+        "parameters": [],
+        "requestBody": {
+            "required": true,
+            "description": "A recipe as TOML or JSON",
+            "content": { "application/toml": text, "application/json": text },
+        },
+        "responses": {
+            "200": made("The recipe is known"),
+            "201": made("Its world is served, at the address in `Location`"),
+            "400": error("The recipe is not valid: each line has a place and what is wrong"),
+            "408": error("The recipe did not arrive in time"),
+            "413": error("The recipe is too long, or its world takes too much memory or time"),
+            "503": error("Too many requests are waiting, or the answer takes too long; see `Retry-After`"),
+        },
+    } })
+}
+
 fn operation(prefix: &str, path: &str, about: &str, kind: &str, parameters: Vec<Parameter>) -> Value {
     let whole = format!("{prefix}{path}");
     let mut all: Vec<Value> = Vec::new();
@@ -255,7 +295,6 @@ fn operation(prefix: &str, path: &str, about: &str, kind: &str, parameters: Vec<
             json!({ "name": name, "in": "query", "required": is_required, "schema": schema, "description": about }),
         );
     }
-    let error = |about: &str| json!({ "description": about, "content": { "application/json": { "schema": { "$ref": "#/components/schemas/Error" } } } });
     json!({ "get": {
         "summary": about,
         "parameters": all,

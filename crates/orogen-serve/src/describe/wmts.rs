@@ -16,6 +16,11 @@ use crate::served::{Frame, Served, TILE};
 /// Side of a pixel in metres for which scales of the standard are meant.
 const PIXEL: f64 = 0.28e-3;
 
+/// The parameters of a request for capabilities, in upper or lower case: those of the standard, and the version that
+/// clients add. There is one version and one form of the answer.
+const PARAMETERS: [&str; 7] =
+    ["service", "request", "version", "acceptversions", "sections", "updatesequence", "acceptformats"];
+
 /// The answer.
 pub async fn capabilities(call: Call) -> Result<Response, Refusal> {
     let served = call.served()?;
@@ -27,6 +32,7 @@ pub async fn capabilities(call: Call) -> Result<Response, Refusal> {
             "this service has no request `{request}`: its tiles have addresses of their own, which the capabilities list"
         )));
     }
+    call.query.without(&PARAMETERS).only_of_variants(&PARAMETERS)?;
     let text = text(&call, &served)?;
     answer::text(&call.headers, "application/xml", &text, call.is_private())
 }

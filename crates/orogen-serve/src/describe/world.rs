@@ -62,7 +62,7 @@ pub async fn world(call: Call) -> Result<Response, Refusal> {
         "find": find,
         "has_studio": call.shared.site.has("studio") && !served.is_place,
         "has_book": call.shared.site.has("book"),
-        "max_samples": call.shared.limits.samples,
+        "max_samples": call.max_samples(&served),
         "orogen": env!("CARGO_PKG_VERSION"),
     });
     answer::text(&call.headers, "application/json", &text.to_string(), call.is_private())
