@@ -80,6 +80,7 @@ Only if named or with --all, because they take long or need large programs:
   faults    clippy on object stores, and builds, caches and elevation models in a store that fails every few requests
   wheel     the same tests of the Python package as the wheel that maturin makes
   nogil     the tests of arrays and worlds from the wheel of the free-threaded python3.14t, in four threads; needs that Python
+  cesium    Cesium in Chromium shows the meshes that `orogen serve` answers: the heights of points
   blender   Blender imports meshes: size, summit and light are right; needs Python 3.11
 
 xtask/clients/passed.txt says when each of these last passed; a run without them prints those that are older than 14 days.
@@ -241,6 +242,12 @@ const CLIENTS: &[Client] = &[
         pip: &[NUMPY, PILLOW, RASTERIO, "trimesh==5.2.0"],
         npm: &["playwright-core@1.65.1"],
     },
+    Client {
+        name: "cesium",
+        apt: &[("chromium", "chromium"), ("node", "nodejs"), ("npm", "npm")],
+        pip: &[NUMPY, PILLOW],
+        npm: &["cesium@1.145.0", "playwright-core@1.65.1"],
+    },
     Client { name: "c", apt: &[("gcc", "gcc"), ("g++", "g++")], pip: &[NUMPY], npm: &[] },
     Client {
         name: "vector",
@@ -355,6 +362,7 @@ const ON_REQUEST: &[&Step] = &[
     &beside("grass", "GRASS and gdaldem compute the same derived layers", || {
         noted("grass", || script_for("grass", "layers"))
     }),
+    &beside("cesium", "Cesium shows the meshes that are served", || noted("cesium", || script("cesium"))),
     &beside("blender", "Blender imports meshes", || noted("blender", blender::check)),
     &beside("azure", "builds, caches and heights in Azurite's object store", || {
         noted("azure", || script_for("azure", "remote"))
