@@ -16,6 +16,10 @@ pub const MAX_BYTES: usize = 256 << 10;
 /// Maximum number of nodes, also with those of the presets that it uses.
 pub const MAX_NODES: usize = 512;
 
+/// Maximum number of inputs of all nodes together, and of outputs, with which a world is still opened at once.
+const MAX_INPUTS: usize = 2048;
+const MAX_OUTPUTS: usize = 64;
+
 /// Recipes that are kept.
 pub const MAX_KEPT: usize = 16;
 
@@ -48,7 +52,17 @@ pub fn is_name(name: &str) -> bool {
 /// # Errors
 /// If it is not valid, or too large: all diagnostics at once, with their places.
 pub fn read(text: &str) -> Result<Recipe> {
-    Registry::new().parse_without_files(text, "recipe", MAX_NODES)
+    let recipe = Registry::new().parse_without_files(text, "recipe", MAX_NODES)?;
+    let inputs: usize = recipe.nodes().iter().map(|named| named.node.inputs().len()).sum();
+    for (what, count, most) in
+        [("inputs of nodes", inputs, MAX_INPUTS), ("outputs", recipe.outputs().count(), MAX_OUTPUTS)]
+    {
+        if count > most {
+            let message = format!("the recipe has {count} {what}; recipes of clients have at most {most}");
+            return Err(Error::new(ErrorKind::Recipe, message));
+        }
+    }
+    Ok(recipe)
 }
 
 /// Checks that a tile of each layer takes neither too much memory nor too much time.

@@ -121,6 +121,26 @@ fn what_is_wrong_is_a_sentence_with_its_place() {
         (format!("x = \"{}\"", "x".repeat(sent::MAX_BYTES)), 413, "a recipe may have 262144 bytes"),
         (whole(&nodes(sent::MAX_NODES + 1), "n0"), 400, "at most 512 are allowed"),
         (whole(&uses(200), "n0"), 400, "more than 512 nodes"),
+        (
+            format!("{head}[nodes.n]\nop = \"fbm\"\n[outputs]\n")
+                + &(0..65).map(|k| format!("h{k} = \"n\"\n")).collect::<String>(),
+            400,
+            "65 outputs; recipes of clients have at most 64",
+        ),
+        (
+            whole(
+                &(0..50)
+                    .map(|k| {
+                        let names: Vec<String> = (0..50).map(|j| format!("x{j}")).collect();
+                        let given: String = names.iter().map(|name| format!("{name} = 1\n")).collect();
+                        format!("[nodes.n{k}]\nop = \"expr\"\nexpr = \"{}\"\n{given}", names.join("+"))
+                    })
+                    .collect::<String>(),
+                "n0",
+            ),
+            400,
+            "2500 inputs of nodes; recipes of clients have at most 2048",
+        ),
         (expr(&format!("{}1{}", "(".repeat(30_000), ")".repeat(30_000))), 400, "recipe:6:"),
         (expr(&"-".repeat(60_000)), 400, "recipe:6:"),
         (expr(&format!("1{}", "+1".repeat(30_000))), 400, "recipe:6:"),

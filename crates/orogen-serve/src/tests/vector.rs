@@ -1,6 +1,7 @@
 //! Vector tiles: their features are those of the world, and meet those of the tiles beside them.
 
 use orogen::builder::tile_grid::TileGrid;
+use orogen_codec::format::zarr::unpack::Codec;
 
 use super::client::{Running, start, world};
 use super::vector_reader::{Feature, layers};
@@ -154,4 +155,25 @@ fn vector_tiles_are_described_and_kept_by_clients() {
     let other = server.get(&format!("{path}&layers=rivers"));
     assert_ne!(other.header("etag"), reply.header("etag"));
     assert_eq!(server.get("/place/tilejson/vector.json").json()["vector_layers"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn tiles_are_compressed_for_clients_that_take_it() {
+    let server = start(&[("hills", &watered())], &[]);
+    let path = "/vector/1/0/0.mvt?grid=world";
+    let packed = server.ask("GET", path, &["Accept-Encoding: gzip"]);
+    let plain = server.get(path);
+    assert_eq!((packed.header("content-encoding"), packed.header("vary")), ("gzip", "accept-encoding"));
+    assert_eq!((plain.header("content-encoding"), plain.header("vary")), ("", "accept-encoding"));
+    assert_eq!(Codec::named("gzip").unwrap().unpack(&packed.body, 1 << 24).unwrap(), plain.body);
+    assert_ne!(packed.header("etag"), plain.header("etag"));
+    let known = format!("If-None-Match: {}", packed.header("etag"));
+    assert_eq!(server.ask("GET", path, &["Accept-Encoding: gzip", &known]).status, 304);
+    // A part is one of the plain bytes; a tile without features has none.
+    let part = server.ask("GET", path, &["Accept-Encoding: gzip", "Range: bytes=0-9"]);
+    assert!(part.status == 206 && part.body == plain.body[..10]);
+    let lakes = (0..8).map(|column| format!("/vector/5/{column}/0.mvt?grid=world&layers=lakes"));
+    let all: Vec<_> = lakes.map(|path| server.ask("GET", &path, &["Accept-Encoding: gzip"])).collect();
+    let none = all.iter().find(|reply| reply.body.is_empty()).unwrap();
+    assert_eq!((none.status, none.header("content-encoding")), (200, ""));
 }
