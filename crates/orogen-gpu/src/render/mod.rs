@@ -20,8 +20,6 @@ use orogen_output::render::device::{Painted, RenderDevice};
 use orogen_output::render::scene::Scene;
 use orogen_output::render::skylight::{Shed, SkylightDevice, SkylightInput};
 use shader::Encoded;
-#[doc(hidden)]
-pub use shader::LightShader;
 pub use skylight::skylight;
 
 /// Maximum number of rays of a dispatch: less than a second on a slow card, and enough to use a fast one fully.

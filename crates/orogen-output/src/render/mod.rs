@@ -21,6 +21,8 @@ pub mod relief;
 #[doc(hidden)]
 pub mod scene;
 mod shade;
+#[doc(hidden)]
+pub mod shader;
 pub(crate) mod sky;
 #[doc(hidden)]
 pub mod skylight;

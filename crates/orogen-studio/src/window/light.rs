@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use eframe::egui::Context;
-use orogen::gpu::render::LightShader;
 use orogen::output::render::lighting::Lighting;
+use orogen::output::render::shader::LightShader;
 use orogen::{Progress, Session};
 use serde::{Deserialize, Serialize};
 

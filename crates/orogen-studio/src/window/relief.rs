@@ -6,7 +6,7 @@ use std::sync::Arc;
 use eframe::egui::PaintCallbackInfo;
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, ScreenDescriptor, wgpu};
 use glam::Mat4;
-use orogen::gpu::render::LightShader;
+use orogen::output::render::shader::LightShader;
 use orogen::{Grid, Window};
 use wgpu::util::DeviceExt as _;
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable};
 use eframe::egui_wgpu::{RenderState, wgpu};
 use orogen::Window;
-use orogen::gpu::render::LightShader;
+use orogen::output::render::shader::LightShader;
 
 use crate::preview::frame::{Frame, Key};
 use crate::preview::ring::Ring;
