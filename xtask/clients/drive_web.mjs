@@ -1,17 +1,20 @@
-// Uses the studio in Chromium like a person: node drive_web.mjs ADDRESS FOLDER NODE_MODULES.
+// Uses the studio in Chromium like a person: node drive_web.mjs PLAIN ISOLATED FOLDER NODE_MODULES.
 //
-// Pictures and downloads go to the folder, and what happened is printed as JSON: messages of the console, requests, and
-// texts that the page keeps. check_web.py judges them.
+// PLAIN and ISOLATED are addresses of the same site; pages of the second one are isolated, and use threads. Pictures and
+// downloads go to the folder, and what happened is printed as JSON: messages of the console, requests, workers, and texts
+// that the page keeps. check_web.py judges them.
 
 import { createRequire } from "node:module";
 import { join } from "node:path";
 
-const [address, folder, modules] = process.argv.slice(2);
+const [plain, isolated, folder, modules] = process.argv.slice(2);
 const { chromium } = createRequire(join(modules, "/"))("playwright-core");
 
+// Both kinds of graphics are drawn by the processor; without the flags for Vulkan, pictures of WebGPU are empty.
 const FLAGS = [
-  "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
-  "--disable-background-networking", "--disable-component-update", "--disable-sync",
+  "--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--enable-unsafe-webgpu",
+  "--use-webgpu-adapter=swiftshader", "--enable-features=Vulkan", "--use-vulkan=swiftshader", "--disable-quic",
+  "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
 ];
 // The whole run on a busy machine.
 const PATIENCE = 240_000;
@@ -23,10 +26,11 @@ const browser = await chromium.launchPersistentContext(join(folder, "profile"), 
   colorScheme: "dark",
   acceptDownloads: true,
 });
-const said = { errors: [], requests: [], texts: {}, downloads: [] };
+const said = { errors: [], requests: [], texts: {}, downloads: [], workers: {}, pages: {} };
 
-async function open(query) {
+async function open(address, query) {
   const page = await browser.newPage();
+  page.on("worker", () => { page.workersBegun = (page.workersBegun ?? 0) + 1; });
   page.on("console", (message) => message.type() === "error" && said.errors.push(message.text()));
   page.on("pageerror", (error) => said.errors.push(error.message));
   page.on("request", (request) => said.requests.push(request.url()));
@@ -96,11 +100,13 @@ async function command(page, name) {
   await page.waitForTimeout(400);
 }
 
-async function run() {
+// A page with one thread, drawn with WebGL 2.
+async function single() {
   // A recipe of the host, in English.
-  const page = await open("?open=../recipes/land.toml&lang=en");
+  const page = await open(plain, "?open=../recipes/land.toml&lang=en");
   await land(page);
   await shot(page, "english");
+  said.pages.single = await about(page);
 
   // A slider changes the text, and the land.
   const before = await draft(page);
@@ -139,7 +145,7 @@ async function run() {
   await page.close();
 
   // The other language; a file of the computer; what was saved is still there.
-  const chinese = await open("?open=../recipes/land.toml&lang=zh-CN");
+  const chinese = await open(plain, "?open=../recipes/land.toml&lang=zh-CN");
   await land(chinese);
   await shot(chinese, "chinese");
   said.texts.kept = await chinese.evaluate(() => localStorage.getItem("orogen:/mine.toml"));
@@ -159,14 +165,59 @@ async function run() {
   await chinese.close();
 
   // A wrong address is a sentence in the window.
-  const wrong = await open("?open=../recipes/none.toml&lang=en");
+  const wrong = await open(plain, "?open=../recipes/none.toml&lang=en");
   await wrong.waitForTimeout(1500);
   await shot(wrong, "wrong");
   await wrong.close();
 }
 
+// What a page is, and the number of its workers.
+async function about(page) {
+  const about = await page.evaluate(() => ({
+    isIsolated: crossOriginIsolated,
+    cores: navigator.hardwareConcurrency,
+    isWebGpu: document.getElementById("studio").getContext("webgpu") !== null,
+  }));
+  return { ...about, workers: page.workersBegun };
+}
+
+// An isolated page. Changes interrupt the solver, and no worker is replaced.
+async function threads() {
+  const page = await open(isolated, "?open=../recipes/heavy.toml&lang=en");
+  await land(page);
+  said.pages.threads = await about(page);
+  const before = await draft(page);
+  for (const x of [1100, 1110, 1120]) {
+    const text = await draft(page);
+    await drag(page, [x === 1100 ? 1087 : x - 10, 193], [x, 193]);
+    await changed(page, "the slider", text);
+    await page.waitForTimeout(700);
+  }
+  said.texts.heavyBefore = before;
+  said.texts.heavy = await draft(page);
+  await page.waitForTimeout(1500);
+  await land(page);
+  await shot(page, "threads");
+  said.workers.changed = page.workersBegun;
+  await page.keyboard.press("Control+E");
+  await page.waitForTimeout(800);
+  await download(page, () => click(page, 567, 331));
+  await page.close();
+}
+
+// An isolated page that is drawn with WebGPU.
+async function webGpu() {
+  const page = await open(isolated, "?open=../recipes/land.toml&lang=en&graphics=webgpu");
+  await land(page);
+  await shot(page, "webgpu");
+  said.pages.webGpu = await about(page);
+  await page.close();
+}
+
 try {
-  await run();
+  await single();
+  await threads();
+  await webGpu();
 } catch (error) {
   said.errors.push(String(error));
 }

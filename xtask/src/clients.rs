@@ -437,9 +437,17 @@ pub fn install_wasm() -> Result {
     wasm::install()
 }
 
+/// Installs the source of the standard library. Returns whether it is there.
+pub fn install_source() -> bool {
+    wasm::install_source()
+}
+
 /// Builds the studio as a page, and uses it in a browser.
 fn web() -> Result {
-    let page = web_build::build(&folder().join("web"), web_build::Profile::Quick)?;
+    if !wasm::install_source() {
+        return Err(Failure::new("the source of the standard library is missing: rustup component add rust-src"));
+    }
+    let page = web_build::build(&folder().join("web"), web_build::Profile::Quick, true)?;
     let work = empty_work("web")?;
     sh(python_script(&install::python(), "web", "web", &work).env("OROGEN_WEB", page))
 }

@@ -33,7 +33,7 @@ pub use orogen_ops::{
     budget, choice, declare, expression, field, filter, layer, levelled, node, op, registered, solver, value,
 };
 #[doc(hidden)]
-pub use orogen_ops::{ids, large, lower};
+pub use orogen_ops::{ids, large, lower, pool};
 #[doc(hidden)]
 pub use world::{bands, objects, sampler, session, tiles, view, volume};
 

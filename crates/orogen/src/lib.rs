@@ -123,7 +123,7 @@
 
 #[doc(hidden)]
 pub use orogen_engine::{
-    bands, device, device_choice, ids, lower, objects, registry, sampler, session, tiles, view, volume, world,
+    bands, device, device_choice, ids, lower, objects, pool, registry, sampler, session, tiles, view, volume, world,
 };
 #[doc(inline)]
 pub use orogen_engine::{

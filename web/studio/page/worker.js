@@ -1,14 +1,18 @@
-// An instance of the studio that does its work. The first message is the module, the others are tasks.
+// An instance of the studio that does its work, or that lends its thread to another instance.
 
-import init, { work } from "./studio.js";
-
+const folder = new URLSearchParams(location.search).has("threads") ? "./threads/" : "./";
 const waiting = [];
-let isReady = false;
+let work;
 
+// The first message has the module, and the memory of the instance to which the thread is lent. The others are for that
+// instance's work.
 onmessage = async ({ data }) => {
-  if (isReady) return work(data);
-  if (!(data instanceof WebAssembly.Module)) return waiting.push(data);
-  await init({ module_or_path: data });
-  isReady = true;
+  if (work) return work(data);
+  if (data[0] !== "begin") return waiting.push(data);
+  const [, module, memory] = data;
+  const program = await import(`${folder}studio.js`);
+  await program.default({ module_or_path: module, memory });
+  if (memory) return program.lend();
+  work = program.work;
   waiting.splice(0).forEach((message) => work(message));
 };

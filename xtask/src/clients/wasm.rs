@@ -23,6 +23,24 @@ pub fn install() -> Result {
     })
 }
 
+/// Installs the source of the standard library, which a module with threads is built with. Returns whether it is there.
+pub fn install_source() -> bool {
+    let is_there = || {
+        let root = shell::capture(shell::program("rustc").args(["--print", "sysroot"]));
+        root.is_ok_and(|root| Path::new(root.trim()).join("lib/rustlib/src/rust/library/std/Cargo.toml").is_file())
+    };
+    if is_there() {
+        return true;
+    }
+    output::line(format_args!("    rustup component add rust-src"));
+    let install = || {
+        let mut command = shell::program("rustup");
+        command.args(["component", "add", "rust-src"]);
+        command
+    };
+    install::patiently(install).is_ok() && is_there()
+}
+
 /// One preset of each kind: noise, levels, a volume, stream power.
 const FOUR: &str = "classic endless caves volcano";
 

@@ -7,6 +7,8 @@ use std::time::Duration;
 pub use std::time::{Instant, SystemTime};
 
 use orogen::{Progress, Result, Session};
+#[cfg(feature = "window")]
+pub use orogen_gpu::Gpu;
 
 use super::Task;
 
@@ -44,6 +46,13 @@ pub fn start<T: Task>(
 ) -> Result<()> {
     let progress = progress.clone();
     session.start(move |session| task.run(session, &progress, &tell))
+}
+
+/// A session whose previews are computed on a graphics card.
+#[cfg(feature = "window")]
+#[must_use]
+pub fn with_gpu(session: &Session, gpu: &Gpu) -> Session {
+    session.with_device(std::sync::Arc::new(gpu.clone()))
 }
 
 /// Starts a thread that watches files which other programs may change.
@@ -111,6 +120,9 @@ pub fn download(_: &str, _: &[u8]) {}
 
 /// What is due at the end of a frame: nothing.
 pub fn end_frame() {}
+
+/// Says that the page cannot draw again, if there is one.
+pub fn end_page() {}
 
 /// States the title and the language of the page, if there is one.
 pub fn describe(_: &str, _: &str) {}

@@ -2,6 +2,9 @@
 
 mod desk;
 mod files;
+#[cfg(feature = "window")]
+mod gpu;
+mod group;
 mod storage;
 mod worker;
 
@@ -14,14 +17,21 @@ pub use desk::{end_frame, prepare, start};
 #[cfg(feature = "window")]
 pub use files::receive;
 pub use files::{Chosen, choose, download, fetch};
+#[cfg(feature = "window")]
+pub use gpu::{Gpu, with_gpu};
 pub use storage::begin;
 use wasm_bindgen::JsValue;
-use web_sys::UrlSearchParams;
+use web_sys::{Event, UrlSearchParams};
 pub use web_time::Instant;
+#[cfg(target_feature = "atomics")]
+pub use worker::lend;
 pub use worker::{Runner, work};
 
+/// Whether workers share memory: they compute with several threads, and can be interrupted.
+const SHARES_MEMORY: bool = cfg!(target_feature = "atomics");
+
 /// Whether work is cancelled only between its steps, so that it is better not asked for more than can be shown.
-pub const IS_STEPWISE: bool = true;
+pub const IS_STEPWISE: bool = !SHARES_MEMORY;
 
 /// Whether this is a page of a browser: it has no windows, and its files are not those of the computer.
 pub const IS_PAGE: bool = true;
@@ -100,6 +110,13 @@ pub fn choose_file(
 #[must_use]
 pub fn chinese_font() -> Option<(&'static str, Vec<u8>, u32)> {
     None
+}
+
+/// Says that the page cannot draw again: its script hears the event `graphicslost`.
+pub fn end_page() {
+    if let (Some(window), Ok(event)) = (web_sys::window(), Event::new("graphicslost")) {
+        let _ = window.dispatch_event(&event);
+    }
 }
 
 /// States the title and the language of the page. The language chooses among the variants of Chinese characters.

@@ -8,7 +8,6 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use eframe::egui::{self, Context, Panel, Ui};
-use orogen::gpu::Gpu;
 use orogen::{Budget, Options, Result, Session};
 
 use super::action::Action;
@@ -28,7 +27,7 @@ use super::{fonts, menu, theme};
 use crate::catalogue::Language;
 use crate::editing::document::Document;
 use crate::file_watch::FileWatch;
-use crate::platform;
+use crate::platform::{self, Gpu};
 use crate::preview::coloring::Coloring;
 use crate::preview::colors::palette;
 use crate::preview::worker::Wake;
@@ -107,7 +106,7 @@ impl App {
         let Start { settings, folder, document, gpu, watch, is_after_loss, lose_device, message } = start;
         let session = Session::new(Options { memory: Budget::of(settings.memory), ..Options::default() })?;
         let session = match &gpu {
-            Some(gpu) => session.with_device(Arc::new(gpu.clone())),
+            Some(gpu) => platform::with_gpu(&session, gpu),
             None => session,
         };
         let repaint = context.egui_ctx.clone();
@@ -368,7 +367,7 @@ impl App {
         }
     }
 
-    /// Closes the window if its graphics device is lost, and reports errors of the device.
+    /// Closes the window, or ends the page, if its graphics device is lost, and reports errors of the device.
     fn look_at_device(&mut self, context: &Context, frame: &eframe::Frame) {
         if let Some(after) = self.lose_device {
             let left = after - context.input(|input| input.time);
@@ -382,6 +381,7 @@ impl App {
             }
         }
         if self.watch.lost().is_some() {
+            platform::end_page();
             self.may_close = true;
             self.keeps_recovered = true;
             context.send_viewport_cmd(egui::ViewportCommand::Close);

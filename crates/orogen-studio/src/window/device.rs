@@ -9,6 +9,8 @@ use eframe::egui_wgpu::{RenderState, wgpu};
 #[derive(Debug, Clone, Default)]
 pub struct DeviceWatch {
     shared: Arc<Mutex<Faults>>,
+    /// The device. Its callbacks do not have it, because in a page with threads a device cannot be sent to another one.
+    device: Arc<Mutex<Option<wgpu::Device>>>,
 }
 
 #[derive(Debug, Default)]
@@ -21,8 +23,6 @@ struct Faults {
     was_told: bool,
     /// The document that was open when the device was lost.
     document: Option<PathBuf>,
-    /// The device.
-    device: Option<wgpu::Device>,
 }
 
 impl DeviceWatch {
@@ -33,7 +33,7 @@ impl DeviceWatch {
             let mut faults = shared.lock().unwrap_or_else(PoisonError::into_inner);
             faults.lost.get_or_insert(format!("{reason:?}: {message}"));
         });
-        self.shared.lock().unwrap_or_else(PoisonError::into_inner).device = Some(state.device.clone());
+        *self.device.lock().unwrap_or_else(PoisonError::into_inner) = Some(state.device.clone());
         let shared = Arc::clone(&self.shared);
         state.device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             let mut faults = shared.lock().unwrap_or_else(PoisonError::into_inner);
@@ -46,7 +46,7 @@ impl DeviceWatch {
     /// The reason why the device is lost, if it is.
     #[must_use]
     pub fn lost(&self) -> Option<String> {
-        let device = self.shared.lock().unwrap_or_else(PoisonError::into_inner).device.clone();
+        let device = self.device.lock().unwrap_or_else(PoisonError::into_inner).clone();
         if let Some(device) = device {
             // The device only reports its loss when it is polled.
             let _ = device.poll(wgpu::PollType::Poll);

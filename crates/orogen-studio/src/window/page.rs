@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use eframe::egui_wgpu::{WgpuSetup, wgpu};
 use eframe::{WebOptions, WebRunner};
 use js_sys::Function;
 use orogen::Result;
@@ -18,10 +19,16 @@ use crate::studio::open;
 
 /// Opens the window in a canvas. The address of the page may have a `preset`, or a recipe to `open`, and a language
 /// (`lang`). `held` are the locks of the browser that other pages of the site have, and `hold` takes one by its name.
+/// It is drawn with WebGPU if `with_webgpu`, otherwise with WebGL 2.
 ///
 /// # Errors
-/// If the browser cannot draw.
-pub async fn run(canvas: HtmlCanvasElement, held: &[String], hold: Function) -> std::result::Result<(), String> {
+/// If the browser cannot draw. It may be tried again in another canvas.
+pub async fn run(
+    canvas: HtmlCanvasElement,
+    held: &[String],
+    hold: Function,
+    with_webgpu: bool,
+) -> std::result::Result<(), String> {
     platform::prepare();
     platform::begin(held, hold);
     let folder = files::settings_folder();
@@ -34,7 +41,11 @@ pub async fn run(canvas: HtmlCanvasElement, held: &[String], hold: Function) -> 
         Err(message) => (None, Some(message)),
     };
     let begin = Start { settings, folder, document, message, ..Start::default() };
-    let options = WebOptions { dithering: false, ..WebOptions::default() };
+    let mut options = WebOptions { dithering: false, ..WebOptions::default() };
+    if let WgpuSetup::CreateNew(setup) = &mut options.wgpu_options.wgpu_setup {
+        setup.instance_descriptor.backends =
+            if with_webgpu { wgpu::Backends::BROWSER_WEBGPU } else { wgpu::Backends::GL };
+    }
     let runner = WebRunner::new();
     let start = runner.start(canvas, options, Box::new(|context| Ok(Box::new(App::new(context, begin)?))));
     start.await.map_err(|cause| cause.as_string().unwrap_or_else(|| format!("{cause:?}")))

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use eframe::egui::{self, CentralPanel, Panel, RichText, Ui, ViewportBuilder, ViewportClass, ViewportId};
-use orogen::gpu::Gpu;
 
 use super::action::Action;
 use super::graph_panel::Graph;
@@ -18,7 +17,7 @@ use super::tools::Tools;
 use super::variants_panel::VariantsPanel;
 use super::{analysis_panel, status, theme, tool_row};
 use crate::catalogue::Language;
-use crate::platform;
+use crate::platform::{self, Gpu};
 use crate::preview::worker::Wake;
 use crate::settings::Settings;
 use crate::settings::layout::{Below, Layout, View};

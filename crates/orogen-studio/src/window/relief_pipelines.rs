@@ -1,7 +1,7 @@
 //! The shaders of the 3D view, and what they read.
 
 use eframe::egui_wgpu::wgpu;
-use orogen::gpu::render::LightShader;
+use orogen::output::render::shader::LightShader;
 
 use super::mesh::Vertex;
 use super::relief_drawing::{Ability, COLOR, POSITIONS};
@@ -106,7 +106,10 @@ impl Pipelines {
     /// Compiles the shaders. The code is the same for all light.
     pub fn new(device: &wgpu::Device, ability: Ability, light: &LightShader) -> Pipelines {
         let words = light.words.len().div_ceil(4);
-        let text = format!("const WORDS = {words}u;\n{}{}", light.text, include_str!("relief.wgsl"));
+        // Contours have the width of their heights' derivative, which is only used where it is defined; browsers would
+        // refuse it.
+        let rule = "diagnostic(off, derivative_uniformity);";
+        let text = format!("{rule}\nconst WORDS = {words}u;\n{}{}", light.text, include_str!("relief.wgsl"));
         let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("relief"),
             source: wgpu::ShaderSource::Wgsl(text.into()),

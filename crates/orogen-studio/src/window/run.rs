@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use clap::Parser;
 use eframe::egui::ViewportBuilder;
 use orogen::device_choice::DeviceChoice;
-use orogen::gpu::Gpu;
+use orogen_gpu::Gpu;
 
 use super::app::{App, Start};
 use super::device::DeviceWatch;

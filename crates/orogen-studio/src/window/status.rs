@@ -1,9 +1,9 @@
 //! The line at the bottom of the window.
 
 use eframe::egui::{self, Ui};
-use orogen::gpu::Gpu;
 
 use crate::catalogue::Language;
+use crate::platform::Gpu;
 use crate::preview::frame::Quality;
 use crate::studio::Studio;
 

@@ -1,8 +1,8 @@
 //! Hands tasks to workers, which run one after another, and their events to those who asked.
 //!
-//! There are two workers: one for pictures of the land, and one for everything else, which waits. A worker does not
-//! hear of anything while it runs a task. A cancelled task that does not end soon is ended with its worker; a new
-//! worker has nothing of what the old one has solved.
+//! There are two workers: one for pictures of the land, and one for everything else, which waits. A cancelled task that
+//! does not end soon is ended with its worker; a new worker has nothing of what the old one has solved. Where memory is
+//! shared, tasks are interrupted, and end soon.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -12,16 +12,14 @@ use js_sys::{Array, Uint8Array};
 use orogen::{Error, ErrorKind, Progress, Result, Session};
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
-use web_sys::{MessageEvent, Worker, WorkerOptions, WorkerType};
+use web_sys::MessageEvent;
 
 use super::super::Task;
-use super::{Instant, files, storage};
+use super::group::WorkerGroup;
+use super::{Instant, SHARES_MEMORY, files, storage};
 
 /// How long a cancelled task may go on.
-const PATIENCE: Duration = Duration::from_millis(400);
-
-/// The script of a worker.
-const SCRIPT: &str = "worker.js";
+const PATIENCE: Duration = Duration::from_millis(if SHARES_MEMORY { 10_000 } else { 400 });
 
 /// Receives the bytes of an event.
 type Hear = Box<dyn Fn(&[u8])>;
@@ -45,7 +43,7 @@ struct Job {
 /// A worker and its tasks.
 #[derive(Default)]
 struct Desk {
-    worker: Option<Worker>,
+    group: Option<WorkerGroup>,
     /// The number of the last change of the files that it knows.
     files: u64,
     running: Option<Job>,
@@ -106,7 +104,7 @@ fn failed(message: &str) -> Error {
 
 /// Starts the worker for pictures, before there is a task for it.
 pub fn prepare() {
-    if let Err(cause) = DESKS.with_borrow_mut(|desks| desks[0].hire(0)) {
+    if let Err(cause) = DESKS.with_borrow_mut(|desks| desks[0].hire(0).map(drop)) {
         super::warn(&format!("no worker can be started: {cause:?}"));
     }
 }
@@ -143,6 +141,9 @@ impl Desk {
         self.waiting.retain(|job| !job.progress.is_cancelled());
         let mut wait = None;
         if let Some(job) = self.running.as_mut().filter(|job| job.progress.is_cancelled()) {
+            if let Some(group) = self.group.as_ref().filter(|_| job.cancelled.is_none()) {
+                group.interrupt();
+            }
             let spent = now - *job.cancelled.get_or_insert(now);
             if spent >= PATIENCE {
                 self.end_worker();
@@ -153,12 +154,11 @@ impl Desk {
         if self.running.is_none()
             && let Some(job) = self.waiting.pop_front()
         {
-            match job.not_before > now {
-                true => {
-                    wait = Some(job.not_before - now);
-                    self.waiting.push_front(job);
-                }
-                false => self.give(at, job),
+            if job.not_before > now {
+                wait = Some(job.not_before - now);
+                self.waiting.push_front(job);
+            } else {
+                self.give(at, job);
             }
         }
         let wait = wait.filter(|_| !self.is_due);
@@ -167,43 +167,52 @@ impl Desk {
     }
 
     fn end_worker(&mut self) {
-        if let Some(worker) = self.worker.take() {
-            worker.set_onmessage(None);
-            worker.terminate();
+        if let Some(group) = self.group.take() {
+            group.end();
         }
         (self.running, self.files) = (None, 0);
     }
 
+    /// Gives a task to the worker, or puts it back until the worker is ready.
     fn give(&mut self, at: usize, job: Job) {
-        let given = self.hire(at).and_then(|worker| {
-            for (path, bytes) in storage::changed(&mut self.files) {
-                let bytes = bytes.map_or(JsValue::NULL, |bytes| Uint8Array::from(&bytes[..]).into());
-                worker.post_message(&array(&["file".into(), path.into(), bytes]))?;
-            }
-            let bytes = Uint8Array::from(&job.bytes[..]);
-            let buffers = Array::of1(&bytes.buffer());
-            let message = array(&["task".into(), job.number.into(), job.name.into(), bytes.into()]);
-            worker.post_message_with_transfer(&message, &buffers)
-        });
-        match given {
+        match self.hire(at) {
+            Ok(true) => {}
+            Ok(false) => return self.waiting.push_front(job),
+            Err(cause) => return super::warn(&format!("no worker can be started: {cause:?}")),
+        }
+        match self.send(&job) {
             Ok(()) => self.running = Some(Job { bytes: Vec::new(), ..job }),
-            Err(cause) => super::warn(&format!("no worker can be started: {cause:?}")),
+            Err(cause) => super::warn(&format!("a task cannot be sent: {cause:?}")),
         }
     }
 
-    /// The worker, started if necessary.
-    fn hire(&mut self, at: usize) -> std::result::Result<Worker, JsValue> {
-        if let Some(worker) = &self.worker {
-            return Ok(worker.clone());
+    /// Sends the files that have changed, and a task.
+    fn send(&mut self, job: &Job) -> std::result::Result<(), JsValue> {
+        let Some(group) = &self.group else { return Ok(()) };
+        let worker = group.worker();
+        for (path, bytes) in storage::changed(&mut self.files) {
+            let bytes = bytes.map_or(JsValue::NULL, |bytes| Uint8Array::from(&bytes[..]).into());
+            worker.post_message(&array(&["file".into(), path.into(), bytes]))?;
         }
-        let options = WorkerOptions::new();
-        options.set_type(WorkerType::Module);
-        let worker = Worker::new_with_options(SCRIPT, &options)?;
-        let hear = Closure::<dyn FnMut(MessageEvent)>::new(move |event: MessageEvent| hear(at, &event.data()));
-        worker.set_onmessage(Some(hear.into_js_value().unchecked_ref()));
-        worker.post_message(&wasm_bindgen::module())?;
-        self.worker = Some(worker.clone());
-        Ok(worker)
+        let bytes = Uint8Array::from(&job.bytes[..]);
+        let buffers = Array::of1(&bytes.buffer());
+        let message = array(&["task".into(), job.number.into(), job.name.into(), bytes.into()]);
+        worker.post_message_with_transfer(&message, &buffers)
+    }
+
+    /// Starts the worker if necessary. Returns whether it is ready.
+    fn hire(&mut self, at: usize) -> std::result::Result<bool, JsValue> {
+        if let Some(group) = &self.group {
+            return Ok(group.is_ready());
+        }
+        let hear = Closure::<dyn FnMut(JsValue)>::new(move |event: JsValue| match event.dyn_ref::<MessageEvent>() {
+            Some(event) => hear(at, &event.data()),
+            None => hear(at, &event),
+        });
+        let group = WorkerGroup::start(hear.into_js_value().unchecked_into())?;
+        let is_ready = group.is_ready();
+        self.group = Some(group);
+        Ok(is_ready)
     }
 }
 
@@ -213,9 +222,12 @@ fn hear(at: usize, message: &JsValue) {
     let (what, number) = (parts.get(0).as_string().unwrap_or_default(), parts.get(1).as_f64());
     let bytes = |part: u32| Uint8Array::new(&parts.get(part)).to_vec();
     let mut ended = None;
-    DESKS.with_borrow_mut(|desks| {
+    let is_of_group = DESKS.with_borrow_mut(|desks| {
         let desk = &mut desks[at];
-        let Some(job) = desk.running.as_mut().filter(|job| Some(job.number) == number) else { return };
+        if desk.group.as_mut().is_some_and(|group| group.hear(parts)) {
+            return true;
+        }
+        let Some(job) = desk.running.as_mut().filter(|job| Some(job.number) == number) else { return false };
         match what.as_str() {
             "event" => (job.hear)(&bytes(2)),
             "share" => {
@@ -226,7 +238,11 @@ fn hear(at: usize, message: &JsValue) {
             "file" => job.made.push((parts.get(2).as_string().unwrap_or_default(), bytes(3))),
             _ => ended = desk.running.take(),
         }
+        false
     });
+    if is_of_group {
+        look(at);
+    }
     if let Some(job) = ended {
         if !job.progress.is_cancelled() {
             files::hand_over(job.made);

@@ -41,8 +41,11 @@ fn storage() -> Option<Storage> {
     web_sys::window()?.local_storage().ok()?
 }
 
-/// Reads the files that were kept. `held` are the locks that other pages of the site have, and `hold` takes one.
+/// Reads the files that were kept, once. `held` are the locks that other pages of the site have, and `hold` takes one.
 pub fn begin(held: &[String], hold: Function) {
+    if LOCKS.with_borrow(|locks| locks.hold.is_some()) {
+        return;
+    }
     fs::memory::set_clock(clock);
     let _ = fs::create_dir_all(SETTINGS);
     if let Some(storage) = storage() {

@@ -1,8 +1,9 @@
 //! The instance of the program in a worker: it runs tasks one after another.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use js_sys::{Array, Uint8Array};
 use orogen::io::fs;
@@ -21,20 +22,32 @@ const BETWEEN: u64 = 100;
 
 thread_local! {
     static SESSION: RefCell<Option<Session>> = const { RefCell::new(None) };
+    /// Number of threads that the page has started for the session.
+    static THREADS: Cell<usize> = const { Cell::new(0) };
+    /// Set by the page to interrupt a task.
+    static STOP: Arc<AtomicBool> = Arc::default();
     /// The number of the last change of a file that the page knows.
     static KNOWN: RefCell<u64> = const { RefCell::new(0) };
 }
 
-/// Takes a message of the page: a file (`null` for a removed one), or a task.
+/// Takes a message of the page: a question for the memory, the number of threads, a file (`null` for a removed one), or
+/// a task.
 pub fn work(message: &JsValue, runner: Runner) {
     fs::memory::set_clock(clock);
     let parts: &Array = message.unchecked_ref();
     let text = |part: u32| parts.get(part).as_string().unwrap_or_default();
-    if text(0) == "file" {
-        let bytes = parts.get(2);
-        put(&text(1), bytes.is_object().then(|| Uint8Array::new(&bytes).to_vec()));
-        KNOWN.set(fs::memory::changes(u64::MAX).0);
-        return;
+    match text(0).as_str() {
+        "share" => {
+            let stop = STOP.with(|stop| Arc::as_ptr(stop) as usize as f64);
+            return post(&array(&["shared".into(), 0.into(), wasm_bindgen::memory(), stop.into()]), &Array::new());
+        }
+        "threads" => return THREADS.set(parts.get(1).as_f64().unwrap_or_default() as usize),
+        "file" => {
+            let bytes = parts.get(2);
+            put(&text(1), bytes.is_object().then(|| Uint8Array::new(&bytes).to_vec()));
+            return KNOWN.set(fs::memory::changes(u64::MAX).0);
+        }
+        _ => {}
     }
     let number = parts.get(1).as_f64().unwrap_or(0.0);
     if let Some(session) = session() {
@@ -58,22 +71,33 @@ pub fn work(message: &JsValue, runner: Runner) {
 fn session() -> Option<Session> {
     SESSION.with_borrow_mut(|session| {
         if session.is_none() {
-            *session = Session::new(Options { memory: Budget::of(MEMORY), ..Options::default() }).ok();
+            let threads = Some(THREADS.get());
+            *session = Session::new(Options { threads, memory: Budget::of(MEMORY), ..Options::default() }).ok();
         }
         session.clone()
     })
 }
 
-/// Progress that reports its share to the page.
+/// Lends this thread to the instance with the same memory that runs tasks.
+#[cfg(target_feature = "atomics")]
+pub fn lend() {
+    post(&array(&["lent".into()]), &Array::new());
+    match orogen::pool::lend_thread() {}
+}
+
+/// Progress that reports its share to the page, and that the page can interrupt. With threads, any of them reports.
 fn progress(number: f64) -> Progress {
     let (begun, last) = (Instant::now(), AtomicU64::new(0));
-    Progress::new(move |share| {
+    let stop = STOP.with(Arc::clone);
+    stop.store(false, Ordering::Relaxed);
+    let progress = Progress::new(move |share| {
         let now = begun.elapsed().as_millis() as u64;
         if now.saturating_sub(last.load(Ordering::Relaxed)) >= BETWEEN {
             last.store(now, Ordering::Relaxed);
             post(&array(&["share".into(), number.into(), share.into()]), &Array::new());
         }
-    })
+    });
+    progress.stopped_by(stop)
 }
 
 fn put(path: &str, bytes: Option<Vec<u8>>) {
