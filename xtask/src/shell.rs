@@ -50,6 +50,16 @@ pub fn run(command: &mut Command) -> Result {
     if status.success() { Ok(()) } else { Err(Failure::new(format!("`{}` ended with {status}", shown(command)))) }
 }
 
+/// [`run`] whose output is shown only if the program fails.
+pub fn run_silently(command: &mut Command) -> Result {
+    let made = command.stdin(Stdio::null()).output().map_err(|e| cannot_start(command, &e))?;
+    if made.status.success() {
+        return Ok(());
+    }
+    output::line(format_args!("{}", String::from_utf8_lossy(&made.stderr).trim_end()));
+    Err(Failure::new(format!("`{}` ended with {}", shown(command), made.status)))
+}
+
 /// [`run`] that returns the exit status.
 pub fn status(command: &mut Command) -> Result<ExitStatus> {
     output::connect(command).stdin(Stdio::null()).status().map_err(|e| cannot_start(command, &e))

@@ -54,7 +54,12 @@ pub fn build(folder: &Path, profile: Profile, with_threads: bool) -> Result<Path
             Module::Single => page.clone(),
             Module::Threads => page.join("threads"),
         };
-        shell::run(&mut cargo(*module, &format!("--profile {name} --target {TARGET} --package orogen-web-studio")))?;
+        let mut compile = cargo(*module, &format!("--profile {name} --target {TARGET} --package orogen-web-studio"));
+        match module {
+            Module::Single => shell::run(&mut compile)?,
+            // The compiler warns at every crate that the flags for shared memory may change.
+            Module::Threads => shell::run_silently(&mut compile)?,
+        }
         let compiled = built(*module).join(TARGET).join(name).join("studio.wasm");
         shell::run(shell::program(&tool).arg("bind").arg(compiled).arg(&to))?;
         let pack = if profile == Profile::Quick { "pack" } else { "squeeze" };
