@@ -69,18 +69,24 @@ function mask(bounds) {
   return { type: "Feature", properties: {}, geometry: { type: "Polygon", coordinates: [ring(-180, -85, 180, 85), hole] } };
 }
 
-/** The ground: colors of heights and shading. */
+/**
+ * The ground: colors of heights and shading, with three lights like the maps of the program: ridges parallel to a single
+ * light would not be seen. MapLibre keeps the color of ground that meets the light at 30 degrees.
+ */
 function ground(stops) {
   const ramp = ["interpolate", ["linear"], ["elevation"], ...stops.flat()];
-  const strength = state.shading / 100;
+  const each = (of) => [0, -50, 50].map(of);
   return [
     { id: "relief", type: "color-relief", source: "ground", paint: { "color-relief-color": ramp } },
     {
       id: "shade", type: "hillshade", source: "shade",
       paint: {
-        "hillshade-method": "combined", "hillshade-illumination-anchor": "map", "hillshade-illumination-direction": state.azimuth,
-        "hillshade-illumination-altitude": state.altitude, "hillshade-exaggeration": strength,
-        "hillshade-shadow-color": "#142034", "hillshade-highlight-color": "#fff8e8", "hillshade-accent-color": "#142034",
+        "hillshade-method": "multidirectional", "hillshade-illumination-anchor": "map",
+        "hillshade-illumination-direction": each((turn) => (state.azimuth + turn + 360) % 360),
+        "hillshade-illumination-altitude": each((turn) => (turn ? 0.67 : 0.75) * state.altitude),
+        "hillshade-exaggeration": 0.0042 * state.shading,
+        "hillshade-shadow-color": each((turn) => (turn ? "#14203480" : "#142034")),
+        "hillshade-highlight-color": each((turn) => (turn ? "#fff8e840" : "#fff8e8a0")),
       },
     },
   ];
