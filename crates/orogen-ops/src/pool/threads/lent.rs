@@ -13,7 +13,7 @@ static MORE: Condvar = Condvar::new();
 /// Lends the calling thread to the pools of this process, one after another. A pool waits for the threads that it has
 /// asked for. Never returns.
 #[doc(hidden)]
-pub fn lend_thread() -> Infallible {
+pub fn lend_thread() -> ! {
     loop {
         let asked = ASKED.lock().unwrap_or_else(PoisonError::into_inner);
         let asked = MORE.wait_while(asked, |asked| asked.is_empty());

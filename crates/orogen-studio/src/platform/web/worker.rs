@@ -82,7 +82,7 @@ fn session() -> Option<Session> {
 #[cfg(target_feature = "atomics")]
 pub fn lend() {
     post(&array(&["lent".into()]), &Array::new());
-    match orogen::pool::lend_thread() {}
+    orogen::pool::lend_thread()
 }
 
 /// Progress that reports its share to the page, and that the page can interrupt. With threads, any of them reports.
