@@ -145,6 +145,8 @@ def test_files(hills: orogen.World, tmp_path: Path) -> None:
     assert "Hills" in (tmp_path / "map.svg").read_text()
     hills.render(tmp_path / "view.png", size=(160, 90), samples=1, cell=240)
     hills.blocks(tmp_path / "blocks.vox", size=32)
+    hills.blocks(tmp_path / "save", size=32, format="minecraft")
+    assert (tmp_path / "save" / "level.dat").exists() and (tmp_path / "save" / "region" / "r.0.0.mca").exists()
     hills.tilemap(tmp_path / "tiles", size=32)
     hills.build(tmp_path / "heights.tif", cell=120)
     for part in ["2/2", "1/2"]:

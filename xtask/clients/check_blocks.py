@@ -1,13 +1,16 @@
-"""Checks worlds of blocks: nbtlib reads .schem, midvoxio .vox, trimesh and the Khronos validator .glb, and a Luanti server opens the world. All have the same blocks."""
+"""Checks worlds of blocks: nbtlib reads .schem, midvoxio .vox, trimesh and the Khronos validator .glb, anvil-parser2 and nbtlib the save of Minecraft, and a Luanti server opens the world. All have the same blocks."""
 
+import io
 import json
 import os
 import re
 import shutil
 import sqlite3
 import subprocess
+import zlib
 from collections import Counter
 
+import anvil
 import nbtlib
 import numpy
 import trimesh
@@ -28,16 +31,16 @@ STATES = {
 WINDOW = "40,60,300,120"
 
 
-def make(name):
+def make(name, *more):
     """Makes the same part of the world in a format."""
     out = WORK / name
-    orogen("blocks", "caves", "--window", WINDOW, "-o", out, "--quiet")
+    orogen("blocks", "caves", "--window", WINDOW, "-o", out, "--quiet", *more)
     return out
 
 
-def schem():
+def schem(name="b.schem", *more):
     """Reads the schematic: block names in the order level, row from the north, column."""
-    root = nbtlib.load(make("b.schem"))["Schematic"]
+    root = nbtlib.load(make(name, *more))["Schematic"]
     checks.equal("schem: version", (int(root["Version"]), int(root["DataVersion"])), (3, 3700))
     size = [int(root[side]) for side in ("Height", "Length", "Width")]
     checks.equal("schem: columns", size[1:], [120, 300])
@@ -169,6 +172,134 @@ def glb():
     checks.that("glb: unit normals", bool(numpy.allclose(numpy.linalg.norm(normals, axis=1), 1, atol=1e-4)))
 
 
+# The lowest y, and that of the uppermost water.
+BOTTOM, SEA = -64, 62
+OPEN = ("air", "water")
+
+
+def unpacked(longs, bits, count):
+    """Numbers of some bits in longs, none of which spans two of them."""
+    longs = numpy.array(longs, dtype=numpy.int64).view(numpy.uint64)
+    each = 64 // bits
+    shifts = numpy.arange(each, dtype=numpy.uint64) * numpy.uint64(bits)
+    return ((longs[:, None] >> shifts) & numpy.uint64((1 << bits) - 1)).ravel()[:count].astype(int)
+
+
+def plain(name):
+    """The name of our block for that of Minecraft's."""
+    name = name.removeprefix("minecraft:")
+    return STATES.get(name, name)
+
+
+def section_blocks(section):
+    """The names of the blocks of a section: 16 layers, rows and columns."""
+    states = section["block_states"]
+    names = numpy.array([plain(str(state["Name"])) for state in states["palette"]])
+    if len(names) == 1:
+        return numpy.full((16, 16, 16), names[0], dtype=object)
+    return names[unpacked(states["data"], max(4, (len(names) - 1).bit_length()), 4096)].astype(object).reshape(16, 16, 16)
+
+
+def read_region(path):
+    """The chunks of a region file by their positions in it, read by hand as the format describes them."""
+    data = path.read_bytes()
+    checks.equal(f"minecraft: {path.name}: whole sectors, times of 0", (len(data) % 4096, data[4096:8192]), (0, bytes(4096)))
+    chunks = {}
+    used = numpy.zeros(len(data) // 4096, dtype=int)
+    used[:2] += 1
+    for at in range(1024):
+        start, count = int.from_bytes(data[4 * at : 4 * at + 3], "big"), data[4 * at + 3]
+        if count:
+            used[start : start + count] += 1
+            head = 4096 * start
+            size = int.from_bytes(data[head : head + 4], "big")
+            checks.that("minecraft: a chunk of zlib in its sectors", data[head + 4] == 2 and size + 4 <= 4096 * count)
+            chunks[at % 32, at // 32] = nbtlib.File.parse(io.BytesIO(zlib.decompress(data[head + 5 : head + 4 + size])))
+    checks.that(f"minecraft: {path.name}: each sector is used once", (used == 1).all())
+    return chunks
+
+
+def check_chunk(at, chunk, stored):
+    """One chunk against the blocks of the world: its sections, height maps and biomes."""
+    x, z = at
+    name = f"minecraft: chunk {x}, {z}"
+    checks.equal(f"{name}: place and status", (int(chunk["xPos"]), int(chunk["zPos"]), int(chunk["yPos"]), str(chunk["Status"]), int(chunk["DataVersion"])), (x, z, -4, "minecraft:full", 3700))
+    sections = sorted(chunk["sections"], key=lambda section: int(section["Y"]))
+    checks.equal(f"{name}: sections", [int(section["Y"]) for section in sections], list(range(-4, 20)))
+    found = numpy.concatenate([section_blocks(section) for section in sections])
+    checks.that(f"{name}: blocks", (found[1:] == stored[1:]).all())
+    checks.that(f"{name}: bedrock below", (found[0] == numpy.where(stored[0] == "air", "air", "bedrock")).all())
+    leaves = numpy.isin(found, ["leaves", "needles"])
+    counted = {
+        "WORLD_SURFACE": found != "air", "MOTION_BLOCKING": found != "air",
+        "OCEAN_FLOOR": ~numpy.isin(found, OPEN), "MOTION_BLOCKING_NO_LEAVES": (found != "air") & ~leaves,
+    }  # fmt: skip
+    for kind, solid in counted.items():
+        tops = numpy.where(solid.any(axis=0), solid.shape[0] - numpy.argmax(solid[::-1], axis=0), 0)
+        checks.that(f"{name}: {kind}", (unpacked(chunk["Heightmaps"][kind], 9, 256).reshape(16, 16) == tops).all())
+    biomes = set()
+    for section in sections:
+        palette = [str(entry) for entry in section["biomes"]["palette"]]
+        if len(palette) > 1:
+            cells = unpacked(section["biomes"]["data"], (len(palette) - 1).bit_length(), 64)
+            checks.that(f"{name}: biomes", set(cells.tolist()) == set(range(len(palette))))
+        biomes |= set(palette)
+    return biomes
+
+
+def minecraft():
+    """Reads the save by two readers: every block of the window, height maps, biomes and settings."""
+    save = make("save", "--format", "minecraft")
+    left, top, width, length = map(int, WINDOW.split(","))
+    # The same levels from a schematic that goes down further: the highest water ends at y = 62.
+    blocks = schem("deep.schem", "--below", "150")
+    blocks = blocks[int(numpy.argwhere(blocks == "water")[:, 0].max()) - SEA + BOTTOM :]
+    columns = numpy.full((384, length, width), "air", dtype=object)
+    columns[: blocks.shape[0]] = blocks
+    checks.equal("minecraft: files", sorted(path.name for path in save.rglob("*") if path.is_file()), ["level.dat", "r.0.0.mca"])
+    region = save / "region" / "r.0.0.mca"
+    chunks = read_region(region)
+    places = {(x, z) for x in range(left // 16, (left + width - 1) // 16 + 1) for z in range(top // 16, (top + length - 1) // 16 + 1)}
+    checks.equal("minecraft: chunks", set(chunks), places)
+    biomes = set()
+    for (x, z), chunk in sorted(chunks.items()):
+        stored = numpy.full((384, 16, 16), "air", dtype=object)
+        x0, z0, x1, z1 = max(16 * x, left), max(16 * z, top), min(16 * x + 16, left + width), min(16 * z + 16, top + length)
+        stored[:, z0 - 16 * z : z1 - 16 * z, x0 - 16 * x : x1 - 16 * x] = columns[:, z0 - top : z1 - top, x0 - left : x1 - left]
+        biomes |= check_chunk((x, z), chunk, stored)
+    checks.that("minecraft: biomes", {"minecraft:ocean", "minecraft:forest", "minecraft:plains"} <= biomes)
+    by_anvil(region, columns, (left, top))
+    level(nbtlib.load(save / "level.dat")["Data"], columns, (left, top))
+
+
+def by_anvil(region, columns, corner):
+    """The other reader: blocks at random places, also their properties."""
+    file = anvil.Region.from_file(str(region))
+    random = numpy.random.default_rng(2)
+    for x, z in ((5, 6), (12, 9), (20, 10)):
+        chunk = anvil.Chunk.from_region(file, x, z)
+        for column, row, level in random.integers([0, 0, 1], [16, 16, 384], (700, 3)).tolist():
+            block = chunk.get_block(column, level + BOTTOM, row)
+            own = columns[level, 16 * z + row - corner[1], 16 * x + column - corner[0]]
+            checks.equal(f"anvil-parser2: chunk {x}, {z}: {column}, {level}, {row}", plain(block.id), own)
+            if own in ("leaves", "needles"):
+                checks.equal("anvil-parser2: leaves stay", str(block.properties["persistent"]), "true")
+
+
+def level(data, columns, corner):
+    """The settings: the start is on the ground, and nothing is around the land."""
+    checks.equal("level.dat: versions", (int(data["version"]), int(data["DataVersion"]), str(data["Version"]["Name"])), (19133, 3700, "1.20.4"))
+    checks.equal("level.dat: name and mode", (str(data["LevelName"]), int(data["GameType"])), ("save", 1))
+    x, y, z = (int(data[f"Spawn{axis}"]) for axis in "XYZ")
+    column = columns[:, z - corner[1], x - corner[0]]
+    ground = y - BOTTOM
+    checks.that("level.dat: starts above dry ground", (column[ground:] == "air").all() and column[ground - 1] not in OPEN)
+    generator = data["WorldGenSettings"]["dimensions"]["minecraft:overworld"]["generator"]
+    layers = [(str(layer["block"]), int(layer["height"])) for layer in generator["settings"]["layers"]]
+    checks.equal("level.dat: around the land", (str(generator["type"]), str(generator["settings"]["biome"]), layers), ("minecraft:flat", "minecraft:the_void", [("minecraft:air", 1)]))
+    checks.equal("level.dat: seed", int(data["WorldGenSettings"]["seed"]), 3)
+
+
 blocks = schem()
 if CLIENT == "luanti":
     for game in "minetest_game", "bare":
@@ -176,4 +307,5 @@ if CLIENT == "luanti":
 else:
     vox(blocks)
     glb()
+    minecraft()
 checks.end()

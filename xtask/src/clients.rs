@@ -53,7 +53,7 @@ Builds `orogen` in release mode, installs missing clients and runs every step of
   dems      orogen reads heights in every kind that rasterio writes: bit-equal samples, the same coordinates
   meshes    the glTF validator, trimesh, meshio and admesh read GLB, OBJ, PLY, STL and 3MF: samples, orientation, closed solids
   tilemaps  Tiled, PyTMX, ldtkpy and godot_parser read tilemaps: the same tiles, wang sets and pictures
-  blocks    nbtlib, midvoxio and trimesh read blocks: no cracks in the mesh
+  blocks    nbtlib, anvil-parser2, midvoxio and trimesh read blocks: no cracks in the mesh
   contours  gdal_contour of the same heights gives the same lines; GDAL reads our files
   water     GDAL, SQLite and Shapely read rivers, lakes and watersheds: valid, connected, never rising, at the coordinates of the GeoTIFF
   maps      Poppler and librsvg draw map sheets: they look like the .png
@@ -107,7 +107,8 @@ const RASTERIO: &str = "rasterio==1.4.4";
 const XARRAY: &str = "xarray==2026.9.0";
 const ZARR: &str = "zarr==3.1.6";
 const PILLOW: &str = "pillow==12.2.0";
-const BLOCKS: &[&str] = &[NUMPY, "nbtlib==2.0.4", "midvoxio==0.1.6", "matplotlib==3.11.2", "trimesh==5.2.0"];
+const BLOCKS: &[&str] =
+    &[NUMPY, "anvil-parser2==0.10.6", "nbtlib==2.0.4", "midvoxio==0.1.6", "matplotlib==3.11.2", "trimesh==5.2.0"];
 const MOTO: &str = "moto[server]==5.2.5";
 /// A font with Chinese letters, by a file that it has.
 const CHINESE: (&str, &str) = ("/usr/share/fonts/truetype/wqy/wqy-microhei.ttc", "fonts-wqy-microhei");
@@ -345,7 +346,7 @@ const STEPS: &[&Step] = &[
     &beside("tiles", "NumPy and Pillow read tiles", || script("tiles")),
     &beside("dems", "orogen reads what rasterio writes", || script("dems")),
     &beside("tilemaps", "Tiled, PyTMX, ldtkpy and godot_parser read tilemaps", || script("tilemaps")),
-    &beside("blocks", "nbtlib, midvoxio and trimesh read worlds of blocks", || script("blocks")),
+    &beside("blocks", "nbtlib, anvil-parser2, midvoxio and trimesh read worlds of blocks", || script("blocks")),
     &beside("contours", "gdal_contour draws the same contours", || script("contours")),
     &beside("formats", "OpenEXR, GDAL, rasterio, Pillow and Godot read exports", || script("formats")),
     &beside("relief", "gdaldem computes the same hillshade, slope and aspect", || script("relief")),

@@ -49,7 +49,7 @@ enum Command {
     Map(map::Args),
     /// Make a map of tiles for a 2D game: terrain classes drawn with a tileset, for Tiled and for programs
     Tilemap(tilemap::Args),
-    /// Make a world of blocks: a MagicaVoxel scene, a Minecraft schematic, a Luanti world, or a smooth mesh of it
+    /// Make a world of blocks: for Minecraft, Luanti or MagicaVoxel, or a smooth mesh of it
     Blocks(blocks::Args),
     /// Draw variants of a recipe side by side: several seeds, or a range of values of a parameter
     Variants(variants::Args),

@@ -7,7 +7,7 @@ use orogen::builder::{Build, BuildSpec, Form};
 use orogen::export::targets::job::EngineJob;
 use orogen::export::{ExportJob, registry};
 use orogen::io::file::{self, Existing, OutputPolicy};
-use orogen::jobs::blocks::LuantiFolder;
+use orogen::jobs::blocks_folder::BlocksFolder;
 use orogen::jobs::{BlockFormat, BlocksJob, MapJob, RenderJob, SheetFormat};
 use orogen::options::Options;
 use orogen::tilemap::TilemapJob;
@@ -58,6 +58,7 @@ pub fn write(
         "map" => map,
         "render" => render,
         "blocks" => blocks,
+        "minecraft" => minecraft,
         "tilemap" => tilemap,
         "build" => build,
         _ => return Err(internal(py, "unknown work")),
@@ -118,21 +119,30 @@ fn render(work: &Work, progress: &Progress) -> Result<Vec<String>> {
     Ok(Vec::new())
 }
 
-/// Blocks.
+/// Blocks in the format of the file's extension, or a Luanti world if it has none.
 fn blocks(work: &Work, progress: &Progress) -> Result<Vec<String>> {
-    let [files @ .., _] = BlockFormat::ALL.map(|format| (format, format.name()));
+    let files = BlockFormat::FILES.map(|format| (format, format.name()));
     let format = match work.path.extension() {
         None => BlockFormat::Luanti,
         Some(_) => by_extension(work.path, &files, "blocks are a folder for a Luanti world, or a file, which")?,
     };
+    blocks_as(format, work, progress)
+}
+
+/// A save of Minecraft.
+fn minecraft(work: &Work, progress: &Progress) -> Result<Vec<String>> {
+    blocks_as(BlockFormat::Minecraft, work, progress)
+}
+
+fn blocks_as(format: BlockFormat, work: &Work, progress: &Progress) -> Result<Vec<String>> {
     let job = BlocksJob::new(format).with_options(&work.options)?;
     let window = work.window(&BlocksJob::view(&work.view, &work.world.world.recipe().world))?;
     let world = work.world.prepared(|recipe| job.prepare(recipe, window.cell))?;
-    let warning = if format == BlockFormat::Luanti {
-        let folder = LuantiFolder::new(work.path, &work.policy)?;
+    let warning = if format.is_folder() {
+        let folder = BlocksFolder::new(format, work.path, &window, &work.policy)?;
         let made = job.make(&world, &window, progress)?;
         let warning = made.finite.check(&format!("the layer `{HEIGHT}`"))?;
-        made.to_luanti(folder)?;
+        made.to_folder(folder)?;
         warning
     } else {
         let output = work.policy.output(work.path)?;

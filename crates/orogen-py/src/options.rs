@@ -23,7 +23,7 @@ pub fn of_work(work: &str) -> Vec<&'static OptionSpec> {
         "layer" => list::options().into_iter().map(|(spec, _)| spec).collect(),
         "map" => MapJob::OPTIONS.iter().collect(),
         "render" => RenderJob::OPTIONS.iter().collect(),
-        "blocks" => BlocksJob::OPTIONS.iter().collect(),
+        "blocks" | "minecraft" => BlocksJob::OPTIONS.iter().collect(),
         "tilemap" => TilemapJob::OPTIONS.iter().collect(),
         "build" => BuildSpec::OPTIONS.iter().collect(),
         "fit" => FitJob::OPTIONS.iter().collect(),

@@ -368,6 +368,8 @@ class BlocksOptions(TypedDict, total=False):
     """Carve caves into the ground, away from water; not for recipes with an output `density`"""
     exaggeration: float | None
     """Vertical exaggeration of the ground and the water [default: 1]"""
+    sea_y: float | None
+    """Minecraft's y of the uppermost water of the sea, a whole number, in a save or a .schem [default: 62]"""
     section: str | None
     """Draw a vertical cut along a row or a column of the window, counted from 0 in the north and in the west, as a
     .png"""

@@ -7,7 +7,7 @@ import os
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, TypeVar, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -536,12 +536,18 @@ class World:
         window: Part | None = None,
         bounds: Bounds | None = None,
         cell: float | None = None,
+        format: Literal["minecraft"] | None = None,
         overwrite: bool | None = None,
         progress: Progress = None,
         **options: Unpack[BlocksOptions],
     ) -> PathT:
-        """Writes voxels as .vox, .schem, .glb or .png, or a folder for Luanti (`orogen blocks`)."""
-        return self._write("blocks", path, _choice(size, window, bounds, cell), overwrite, progress, dict(options))
+        """Writes voxels as .vox, .schem, .glb or .png, or a folder for Luanti (`orogen blocks`).
+
+        With `format="minecraft"` the folder is a save of Minecraft: Java Edition.
+        """
+        if format not in (None, "minecraft"):
+            raise ValueError(f"the format of blocks must be 'minecraft' or None, not {format!r}")
+        return self._write(format or "blocks", path, _choice(size, window, bounds, cell), overwrite, progress, dict(options))
 
     def tilemap(
         self,

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use orogen::Progress;
-use orogen::jobs::blocks::LuantiFolder;
+use orogen::jobs::blocks_folder::BlocksFolder;
 use orogen::jobs::{BlockFormat, BlocksJob};
 use orogen::world::HEIGHT;
 
@@ -29,7 +29,7 @@ pub struct Args {
     /// Format [default: by the extension of the output; a Luanti world if it has none]
     #[arg(long, value_parser = name_of::blocks())]
     format: Option<BlockFormat>,
-    /// Output: .vox, .schem, .glb, .png, or a folder for a Luanti world; - for standard output
+    /// Output: .vox, .schem, .glb, .png, or a folder for a Luanti world or a save of Minecraft; - for standard output
     #[arg(short, long, value_name = "FILE|DIR", default_value = "blocks.vox")]
     out: PathBuf,
     #[command(flatten)]
@@ -43,8 +43,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 fn blocks(args: &Args) -> Result<(), Failure> {
     let format = format(args)?;
-    if format == BlockFormat::Luanti && is_stdout(&args.out) {
-        return Err(Failure::Usage("a Luanti world has several files: name a folder with -o".into()));
+    if format.is_folder() && is_stdout(&args.out) {
+        return Err(Failure::Usage("this world has several files: name a folder with -o".into()));
     }
     let (bar, progress) = Bar::new(args.run.quiet);
     let made = make(args, format, &progress);
@@ -57,8 +57,8 @@ fn format(args: &Args) -> Result<BlockFormat, Failure> {
     match args.out.extension() {
         None if !is_stdout(&args.out) => Ok(args.format.unwrap_or(BlockFormat::Luanti)),
         _ => {
-            let [files @ .., _] = BlockFormat::ALL.map(|format| (format, format.name()));
-            kind(&args.out, args.format, &files, "blocks are a folder for a Luanti world, or a")
+            let files = BlockFormat::FILES.map(|format| (format, format.name()));
+            kind(&args.out, args.format, &files, "blocks are a folder for a Luanti world or a save of Minecraft, or a")
         }
     }
 }
@@ -77,10 +77,10 @@ fn make(args: &Args, format: BlockFormat, progress: &Progress) -> Result<(), Fai
         Ok(made)
     };
     // Whether the output may be written is checked before the blocks are made.
-    let made = if format == BlockFormat::Luanti {
-        let folder = LuantiFolder::new(&args.out, &policy)?;
+    let made = if format.is_folder() {
+        let folder = BlocksFolder::new(format, &args.out, &window, &policy)?;
         let made = make()?;
-        made.to_luanti(folder)?;
+        made.to_folder(folder)?;
         made
     } else {
         let sink = Sink::new(&args.out, &policy)?;

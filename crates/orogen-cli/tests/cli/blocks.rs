@@ -40,8 +40,9 @@ fn a_small_world_has_a_block_for_each_cell() {
 fn every_format_tells_what_it_made_and_another_seed_is_another_map() {
     let folder = Folder::new();
     folder.write("hills.toml", HILLS);
-    for out in ["b.schem", "b.vox", "b.png", "b"] {
-        let text = folder.good(&["blocks", "hills.toml", "-o", out]).text().to_string();
+    for out in ["b.schem", "b.vox", "b.png", "b", "save --format minecraft"] {
+        let arguments = [&["blocks", "hills.toml", "-o"][..], &out.split(' ').collect::<Vec<_>>()].concat();
+        let text = folder.good(&arguments).text().to_string();
         assert!(text.contains("% stone (") && text.contains("% water (") && text.contains("% sand ("), "{text}");
     }
     assert!(folder.good(&["blocks", "hills.toml", "-o", "b.glb"]).text().contains(" triangles in 1 part"));
@@ -94,6 +95,46 @@ fn a_world_that_was_opened_is_kept() {
 }
 
 #[test]
+fn a_save_is_kept_where_it_was_opened_or_holds_another_part() {
+    let folder = Folder::new();
+    folder.write("hills.toml", HILLS.replace("[60, 40]", "[1200, 40]"));
+    let make = |more: &[&'static str]| {
+        let start = ["blocks", "hills.toml", "--cell", "1", "--format", "minecraft", "-o", "save", "-q", "--window"];
+        [&start[..], more].concat()
+    };
+    folder.good(&make(&["500,0,30,20"]));
+    assert_eq!(folder.names("save/region"), ["r.0.0.mca", "r.1.0.mca"]);
+    let [first, second] = ["save/region/r.0.0.mca", "save/region/r.1.0.mca"].map(|name| folder.read(name));
+    let sectors = |file: &[u8]| file[..4096].chunks(4).filter(|place| **place != [0; 4]).count();
+    // The chunks that the window touches: 31 of the first region, 32 and 33 of the second; two rows of each.
+    assert_eq!([sectors(&first), sectors(&second)], [2, 4]);
+    folder.good(&[&make(&["500,0,30,20"])[..], &["--threads", "1"]].concat());
+    assert!(folder.read("save/region/r.0.0.mca") == first, "the bytes depend on the number of threads");
+    folder.bad(&make(&["1030,0,30,20"]), 1, "it has regions outside of this window");
+    folder.good(&make(&["1030,0,30,20", "--force"]));
+    assert_eq!(folder.names("save/region"), ["r.0.0.mca", "r.1.0.mca", "r.2.0.mca"]);
+    folder.write("save/session.lock", "\u{2603}");
+    folder.bad(&make(&["500,0,600,20"]), 1, "Minecraft has opened this save");
+    folder.good(&make(&["500,0,600,20", "--force"]));
+}
+
+#[test]
+fn land_that_is_too_high_for_minecraft_is_moved_or_scaled() {
+    let folder = Folder::new();
+    folder.write("high.toml", HILLS.replace("* 24 + 2", "* 24 + 400"));
+    let save = |more: &[&'static str]| {
+        [&["blocks", "high.toml", "--format", "minecraft", "-o", "save", "-q"][..], more].concat()
+    };
+    let message = folder.run(&save(&[])).err;
+    let advice = message.split("use --sea-y ").nth(1).and_then(|rest| rest.split(',').next()).unwrap().to_string();
+    folder.good(&[&save(&[])[..], &["--sea-y", &advice]].concat());
+    folder.good(&save(&["--exaggeration", "0.5"]));
+    folder.write("high.toml", HILLS.replace("* 24 + 2", "* 800"));
+    folder.bad(&save(&["--force"]), 2, " or less, or a larger cell, and --sea-y to move it");
+    folder.bad(&save(&["--force", "--below", "5"]), 2, "leave out --below");
+}
+
+#[test]
 fn what_cannot_be_made_is_explained() {
     let folder = Folder::new();
     folder.write("hills.toml", HILLS);
@@ -132,9 +173,10 @@ fn what_a_format_cannot_hold_is_refused_before_the_work() {
     folder.bad(&["blocks", "deep.toml", "--cell", "1", "-o", "deep.vox"], 2, "at most 2000 voxels along a side");
     for height in ["1e29", "-1e29"] {
         folder.write("far.toml", HILLS.replace("* 24", &format!("* {height}")));
-        for out in ["far.vox", "far.schem", "far.glb", "far.png", "far"] {
-            let message = "blocks of 1 m reach up to 4194304 m from height 0; scale the heights, or use a larger cell";
-            folder.bad(&["blocks", "far.toml", "--cell", "1", "-o", out], 2, message);
+        let message = "blocks of 1 m reach up to 4194304 m from height 0; scale the heights, or use a larger cell";
+        for out in ["far.vox", "far.schem", "far.glb", "far.png", "far", "far --format minecraft"] {
+            let arguments = [&["blocks", "far.toml", "--cell", "1", "-o"][..], &out.split(' ').collect::<Vec<_>>()];
+            folder.bad(&arguments.concat(), 2, message);
         }
     }
     assert_eq!(folder.names("."), ["deep.toml", "far.toml", "tall.toml", "wide.toml"]);

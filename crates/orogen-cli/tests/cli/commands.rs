@@ -91,6 +91,10 @@ pub const WRITERS: &[Writer] = &[
             "world/map.sqlite",
         ],
     ),
+    writer(
+        &["blocks", "small.toml", "--size", "32x24", "--format", "minecraft", "-o", "save"],
+        &["save/region/r.0.0.mca", "save/level.dat"],
+    ),
     writer(&["variants", "small.toml", "--seeds", "2", "--size", "64", "-o", "variants.png"], &["variants.png"]),
     writer(&["noise", "perlin", "--size", "32", "-o", "noise.png"], &["noise.png"]),
     writer(&["noise", "perlin", "--size", "32", "-o", "noise.npy"], &["noise.npy"]),

@@ -69,6 +69,7 @@ fn rows(side: usize) -> Vec<Vec<String>> {
         format!("blocks land.toml --size {} -o {out} -q", side / 8)
     }));
     rows.push(format!("blocks land.toml --size {side} -o large.vox -q"));
+    rows.push(format!("blocks land.toml --size {side} --format minecraft --exaggeration 0.2 -o save -q"));
     rows.extend(["png", "svg", "pdf"].map(|kind| format!("map land.toml -o map.{kind} -q")));
     rows.push("map land.toml --color surfaces -o ground.png -q".into());
     rows.push("map climate.toml --color biomes -o biomes.png -q".into());

@@ -1,5 +1,6 @@
 //! The parts of file formats that process samples and bytes.
 
+pub mod anvil;
 pub mod conversion;
 pub mod coordinates;
 pub mod deflate;

@@ -9,16 +9,13 @@ use std::io::{self, Write};
 use orogen_grid::error::{Error, ErrorKind, Result};
 
 use super::gzip;
-use super::nbt::Tags;
+use super::nbt::{DATA_VERSION, Tags};
 
 /// Maximum number of blocks along a side, because sizes are unsigned 16-bit numbers.
 pub const MAX_SIDE: usize = u16::MAX as usize;
 
 /// Maximum number of entries of a palette, so that each index takes one byte.
 const MAX_PALETTE: usize = 128;
-
-/// The data version of the game that defines the block states: 1.20.4.
-const DATA_VERSION: i32 = 3700;
 
 /// A box of blocks.
 #[derive(Debug, Clone, Copy)]

@@ -69,7 +69,7 @@ const KINDS: &[Kind] = &[
     Kind { name: "a ZIP archive", extensions: &["zip", "npz", "kmz"], begins: |head| head.starts_with(b"PK\x03\x04") },
     Kind {
         name: "a gzip archive, such as a schematic",
-        extensions: &["gz", "tgz", "schem"],
+        extensions: &["gz", "tgz", "schem", "dat"],
         begins: |head| head.starts_with(b"\x1f\x8b\x08"),
     },
     Kind { name: "a MagicaVoxel model", extensions: &["vox"], begins: |head| head.starts_with(b"VOX \x96\0\0\0") },
@@ -109,8 +109,8 @@ const SIGNED: &[(&str, &str)] = &[
     ("conf", "a Luanti mod of Orogen"),
 ];
 
-/// Kinds without a signature, which contain only numbers.
-const HEADERLESS: &[&str] = &["r16", "r32", "raw", "hgt"];
+/// Kinds without a signature, which begin with numbers.
+const HEADERLESS: &[&str] = &["r16", "r32", "raw", "hgt", "mca"];
 
 /// The content found at a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

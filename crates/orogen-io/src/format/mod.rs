@@ -73,11 +73,11 @@ pub use sidecar::Sidecar;
 
 #[doc(hidden)]
 pub use orogen_codec::format::weights;
+#[doc(hidden)]
+pub use orogen_codec::format::{
+    anvil, encoding, exr, gif, gzip, half, lerc, levels, luanti, mvt, nbt, npy, outlines, png, schem, vox, zip_writer,
+};
 pub(crate) use orogen_codec::format::{
     conversion, coordinates, exr_block, feature_text, flatbuffer, geojson_reader, gpkg_rows, grey_rows, input,
     metres16, number, sorted_features, sqlite, stored, svg_path, words, xyz_rows, zip,
-};
-#[doc(hidden)]
-pub use orogen_codec::format::{
-    encoding, exr, gif, half, lerc, levels, luanti, mvt, npy, outlines, png, schem, vox, zip_writer,
 };

@@ -1,8 +1,11 @@
 //! Blocks of a world as one job.
 
 use std::io::{self, Write};
-use std::path::Path;
+use std::ops::RangeInclusive;
 
+use super::blocks_folder::BlocksFolder;
+use super::blocks_format::BlockFormat;
+use super::minecraft::MinecraftSave;
 use super::render::EXAGGERATION;
 use crate::options::{OptionSpec, Options, ValueKind};
 use orogen_engine::budget::Reservation;
@@ -16,67 +19,21 @@ use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
 use orogen_grid::words::{count, number};
 use orogen_io::file::cancellable::CancellableWriter;
-use orogen_io::file::{self, Existing, Output, OutputFolder, OutputPolicy};
+use orogen_io::file::{self, Output};
 use orogen_io::format::notes::SOFTWARE;
 use orogen_io::format::{schem, vox};
-use orogen_io::fs;
 use orogen_output::blocks::caves;
 use orogen_output::blocks::kind::{Block, KINDS};
 use orogen_output::blocks::land::{self, COLUMN_BYTES, HALO, Land};
 use orogen_output::blocks::levels::{DEFAULT_BELOW, Extent, Levels, MAX_BELOW};
-use orogen_output::blocks::luanti::{FILES, LuantiWorld, OPENED};
+use orogen_output::blocks::luanti::{FILES, LuantiWorld};
 use orogen_output::blocks::mesh::BlockMesh;
+use orogen_output::blocks::minecraft::placement::SEA_Y;
 use orogen_output::blocks::picture::Isometric;
 use orogen_output::blocks::schem::write_schem;
 use orogen_output::blocks::section::Section;
 use orogen_output::blocks::volume::BlockVolume;
 use orogen_output::blocks::vox::write_vox;
-
-/// The kinds of files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum BlockFormat {
-    /// MagicaVoxel models.
-    Vox,
-    /// A Sponge schematic, version 3, for Minecraft: Java Edition.
-    Schem,
-    /// The smooth surface of the ground as a mesh.
-    Glb,
-    /// A picture: from the south-east, or a vertical section.
-    Png,
-    /// A folder with a Luanti (Minetest) world.
-    Luanti,
-}
-
-impl BlockFormat {
-    /// All kinds.
-    pub const ALL: [BlockFormat; 5] =
-        [BlockFormat::Vox, BlockFormat::Schem, BlockFormat::Glb, BlockFormat::Png, BlockFormat::Luanti];
-
-    /// Its name, which is also the extension of a single file.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            BlockFormat::Vox => "vox",
-            BlockFormat::Schem => "schem",
-            BlockFormat::Glb => "glb",
-            BlockFormat::Png => "png",
-            BlockFormat::Luanti => "luanti",
-        }
-    }
-
-    /// What it is, in a line.
-    #[must_use]
-    pub fn about(self) -> &'static str {
-        match self {
-            BlockFormat::Vox => "MagicaVoxel models (.vox)",
-            BlockFormat::Schem => "A Sponge schematic, version 3, for Minecraft: Java Edition (.schem)",
-            BlockFormat::Glb => "The smooth surface of the ground as a mesh (.glb)",
-            BlockFormat::Png => "A picture from the south-east (.png)",
-            BlockFormat::Luanti => "A folder with a Luanti (Minetest) world",
-        }
-    }
-}
 
 /// Blocks of a world.
 ///
@@ -94,7 +51,12 @@ pub struct BlocksJob {
     pub has_caves: bool,
     /// The section that a picture shows, in place of the view from the south-east.
     pub section: Option<Section>,
+    /// The y of the uppermost water of the sea in Minecraft.
+    pub sea_y: i32,
 }
+
+/// The range of [`BlocksJob::sea_y`].
+const SEA_Y_RANGE: RangeInclusive<f64> = -4_000_000.0..=4_000_000.0;
 
 /// Memory for writing a file, in bytes.
 const ENCODERS: u64 = 4 << 20;
@@ -118,6 +80,9 @@ const OPTIONS: &[OptionSpec] = &[
         "Draw a vertical cut along a row or a column of the window, counted from 0 in the north and in the west, \
              as a .png",
     ),
+    OptionSpec::new("sea-y", "Y", ValueKind::Number(*SEA_Y_RANGE.start(), *SEA_Y_RANGE.end()))
+        .with_about("Minecraft's y of the uppermost water of the sea, a whole number, in a save or a .schem")
+        .with_default("62"),
 ];
 
 impl BlocksJob {
@@ -127,7 +92,7 @@ impl BlocksJob {
     /// Blocks of the ground and the water, without caves.
     #[must_use]
     pub fn new(format: BlockFormat) -> BlocksJob {
-        BlocksJob { format, below: None, exaggeration: 1.0, has_caves: false, section: None }
+        BlocksJob { format, below: None, exaggeration: 1.0, has_caves: false, section: None, sea_y: SEA_Y }
     }
 
     /// The same with all that is chosen by [`OPTIONS`](BlocksJob::OPTIONS).
@@ -136,13 +101,19 @@ impl BlocksJob {
     /// If a section is not valid, or the errors of [`check`](BlocksJob::check).
     pub fn with_options(self, options: &Options) -> Result<BlocksJob> {
         options.check(OPTIONS)?;
-        let job = BlocksJob {
+        let mut job = BlocksJob {
             below: options.whole("below").map(|levels| levels as u32),
             exaggeration: options.number("exaggeration").unwrap_or(self.exaggeration),
             has_caves: options.has("caves"),
             section: options.text("section").map(Section::parse).transpose()?,
             ..self
         };
+        if let Some(y) = options.number("sea-y") {
+            if y.trunc() != y {
+                return Err(Error::new(ErrorKind::Request, format!("--sea-y must be a whole number, not {y}")));
+            }
+            job.sea_y = y as i32;
+        }
         job.check()?;
         Ok(job)
     }
@@ -159,6 +130,12 @@ impl BlocksJob {
         }
         if self.section.is_some() && self.format != BlockFormat::Png {
             return refuse("--section draws a picture: name a .png with -o, or use --format png".into());
+        }
+        if self.below.is_some() && self.format == BlockFormat::Minecraft {
+            return refuse("the blocks of a save of Minecraft go down to its bedrock; leave out --below".into());
+        }
+        if !SEA_Y_RANGE.contains(&f64::from(self.sea_y)) {
+            return refuse(format!("--sea-y must be from -4000000 to 4000000, not {}", self.sea_y));
         }
         Ok(())
     }
@@ -192,6 +169,9 @@ impl BlocksJob {
     /// if memory does not suffice; or the work was cancelled.
     pub fn make<'w>(&self, world: &'w World, window: &Window, progress: &Progress) -> Result<MadeBlocks<'w>> {
         self.check()?;
+        if self.format == BlockFormat::Minecraft {
+            return self.make_minecraft(world, window, progress);
+        }
         // The sides are known before the heights are.
         let sea_level = world.recipe().world.sea_level * self.exaggeration;
         let one = Levels { bottom: Levels::of(sea_level, window.cell), count: 1 };
@@ -228,6 +208,16 @@ impl BlocksJob {
         Ok(made)
     }
 
+    /// Plans a save of Minecraft, whose chunks are made as they are written.
+    fn make_minecraft<'w>(&self, world: &'w World, window: &Window, progress: &Progress) -> Result<MadeBlocks<'w>> {
+        let [reading, writing] = progress.parts([1.0, 9.0]);
+        let save = MinecraftSave::new(world, window, self.exaggeration, self.sea_y, &reading)?;
+        let (finite, levels) = (save.finite, save.placement.levels());
+        let content = Content::Minecraft(save);
+        let job = self.clone();
+        Ok(MadeBlocks { job, world, window: *window, finite, levels, content, writing, _reserved: Vec::new() })
+    }
+
     /// Checks that the format can hold the blocks of a window.
     fn fits(&self, window: &Window, levels: Levels, sea_level: f64, world: &World) -> Result<()> {
         let (width, height) = (window.width, window.height);
@@ -239,6 +229,8 @@ impl BlocksJob {
                 LuantiWorld::start([width, levels.count, height], levels, sea_level, window.cell).map(drop)
             }
             BlockFormat::Glb => world.budget().afford(world.install(|| BlockMesh::memory(window, levels))),
+            // A save is planned by itself.
+            BlockFormat::Minecraft => Ok(()),
         }
     }
 }
@@ -259,20 +251,24 @@ pub struct MadeBlocks<'w> {
 enum Content {
     Mesh(BlockMesh),
     Volume(BlockVolume),
+    Minecraft(MinecraftSave),
 }
 
 impl MadeBlocks<'_> {
-    /// Writes them to a stream; a Luanti world has a folder.
+    /// Writes them to a stream.
     ///
     /// # Errors
-    /// If the stream fails, memory does not suffice, or the work was cancelled.
+    /// If the format is a folder, the stream fails, memory does not suffice, or the work was cancelled.
     pub fn to_stream(&self, out: &mut dyn Write) -> io::Result<()> {
         let out = &mut CancellableWriter { out, progress: &self.writing };
         let notes = [("Software", SOFTWARE)];
         match (&self.content, self.job.format, self.job.section) {
             (Content::Mesh(mesh), ..) => mesh.write_glb(out)?,
+            (Content::Minecraft(_), ..) | (_, BlockFormat::Luanti, _) => {
+                return Err(Error::new(ErrorKind::Internal, "a world of several files has a folder").into());
+            }
             (Content::Volume(volume), _, Some(section)) => section.write(out, volume, &notes)?,
-            (Content::Volume(volume), BlockFormat::Schem, _) => write_schem(out, volume)?,
+            (Content::Volume(volume), BlockFormat::Schem, _) => write_schem(out, volume, self.job.sea_y)?,
             (Content::Volume(volume), BlockFormat::Png, _) => {
                 let picture = Isometric::new(volume.size())?;
                 let _picture = self.world.budget().reserve(picture.memory())?;
@@ -284,25 +280,27 @@ impl MadeBlocks<'_> {
         Ok(())
     }
 
-    /// Writes a Luanti world to its folder, atomically.
+    /// Writes a world to its folder, atomically.
     ///
     /// # Errors
-    /// If they are no blocks of a Luanti world, a file cannot be written, memory does not suffice, or the work was
-    /// cancelled.
-    pub fn to_luanti(&self, folder: LuantiFolder) -> Result<()> {
-        let Content::Volume(volume) = &self.content else {
-            return Err(Error::new(ErrorKind::Internal, "a mesh is no Luanti world"));
+    /// If the format is not a folder, a file cannot be written, memory does not suffice, or the work was cancelled.
+    pub fn to_folder(&self, folder: BlocksFolder) -> Result<()> {
+        let staged = match &self.content {
+            Content::Volume(volume) if self.job.format == BlockFormat::Luanti => {
+                let _map = self.world.budget().reserve(LuantiWorld::memory(volume.blocks.len() as u64))?;
+                let luanti = self.world.install(|| LuantiWorld::new(volume, &self.writing))?;
+                let stage = |(name, output): (&&str, &Output)| {
+                    file::stage(output, |out| {
+                        luanti.write(name, &mut CancellableWriter { out, progress: &self.writing }, SOFTWARE)
+                    })
+                };
+                FILES.iter().zip(folder.outputs()).map(stage).collect::<Result<_>>()?
+            }
+            Content::Minecraft(save) => save.stage(self.world, folder.outputs(), &self.writing)?,
+            _ => return Err(Error::new(ErrorKind::Internal, "these blocks are a single file")),
         };
-        let _map = self.world.budget().reserve(LuantiWorld::memory(volume.blocks.len() as u64))?;
-        let luanti = self.world.install(|| LuantiWorld::new(volume, &self.writing))?;
-        let stage = |(name, output): (&&str, &Output)| {
-            file::stage(output, |out| {
-                luanti.write(name, &mut CancellableWriter { out, progress: &self.writing }, SOFTWARE)
-            })
-        };
-        let staged: Vec<_> = FILES.iter().zip(&folder.outputs).map(stage).collect::<Result<_>>()?;
         file::commit(staged)?;
-        folder.folder.keep();
+        folder.keep();
         self.writing.finish();
         Ok(())
     }
@@ -315,7 +313,10 @@ impl MadeBlocks<'_> {
                 let [triangles, parts] = mesh.triangles();
                 format!("{} in {}", count(triangles, "triangle"), count(parts, "part"))
             }
-            Content::Volume(volume) => self.world.install(|| shares(volume)),
+            Content::Volume(volume) => self.world.install(|| shares(&volume.counts(), volume.enclosed())),
+            Content::Minecraft(save) => save
+                .written()
+                .map_or_else(String::new, |written| shares(&written.counts, written.enclosed) + &written.words()),
         };
         let Window { width, height, cell, .. } = self.window;
         format!(
@@ -328,42 +329,14 @@ impl MadeBlocks<'_> {
 }
 
 /// The kinds of blocks with their numbers and shares, and the air.
-fn shares(volume: &BlockVolume) -> String {
-    let counts = volume.counts();
+fn shares(counts: &[u64; KINDS.len()], enclosed: u64) -> String {
     let all: u64 = counts[1..].iter().sum();
-    let shares = KINDS.iter().zip(counts).skip(1).filter(|(_, blocks)| *blocks > 0);
+    let shares = KINDS.iter().zip(counts).skip(1).filter(|(_, blocks)| **blocks > 0);
     let shares: Vec<String> = shares
-        .map(|(kind, blocks)| format!("{:.1} % {} ({blocks})", 100.0 * blocks as f64 / all as f64, kind.name))
+        .map(|(kind, blocks)| format!("{:.1} % {} ({blocks})", 100.0 * *blocks as f64 / all as f64, kind.name))
         .collect();
     let air = counts[Block::Air as usize];
-    let enclosed = volume.enclosed();
     format!("{all} blocks: {}\n{air} of air, {enclosed} of them in caves and below overhangs", shares.join(", "))
-}
-
-/// The folder of a Luanti world.
-pub struct LuantiFolder {
-    folder: OutputFolder,
-    outputs: Vec<Output>,
-}
-
-impl LuantiFolder {
-    /// The folder, with those around it.
-    ///
-    /// # Errors
-    /// If Luanti has opened a world there, a file may not be replaced, or a folder cannot be made.
-    pub fn new(path: &Path, policy: &OutputPolicy) -> Result<LuantiFolder> {
-        if policy.existing() != Existing::Replace && fs::is_present(&path.join(OPENED)) {
-            let message = format!(
-                "cannot write {}: Luanti has opened this world, so it may have been changed; choose another name, or \
-                 replace its map with --force",
-                path.display()
-            );
-            return Err(Error::new(ErrorKind::File, message));
-        }
-        let outputs = FILES.iter().map(|name| policy.output(path.join(name))).collect::<Result<_>>()?;
-        let textures = path.join(FILES[0]);
-        Ok(LuantiFolder { folder: OutputFolder::ready(textures.parent().unwrap_or(path))?, outputs })
-    }
 }
 
 #[cfg(test)]
@@ -383,6 +356,9 @@ mod tests {
         assert_eq!((other.below, other.exaggeration, other.has_caves), (Some(7), 2.5, true));
         assert_eq!(other.section, Some(Section::Row(12)));
         assert!(job(BlockFormat::Vox, &[("section", "row=12")]).unwrap_err().contains("--section draws a picture"));
+        assert_eq!((own.sea_y, job(BlockFormat::Schem, &[("sea-y", "-300")]).unwrap().sea_y), (62, -300));
+        assert!(job(BlockFormat::Schem, &[("sea-y", "1.5")]).unwrap_err().contains("whole number"));
+        assert!(job(BlockFormat::Minecraft, &[("below", "7")]).unwrap_err().contains("leave out --below"));
         assert!(job(BlockFormat::Png, &[("section", "12")]).unwrap_err().contains("row=N or column=N"));
     }
 }

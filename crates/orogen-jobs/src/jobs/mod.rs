@@ -9,6 +9,10 @@
 pub mod analyze;
 #[doc(hidden)]
 pub mod blocks;
+#[doc(hidden)]
+pub mod blocks_folder;
+#[doc(hidden)]
+pub mod blocks_format;
 mod color_bar;
 mod drawn_map;
 mod finite;
@@ -23,6 +27,7 @@ pub mod map_tiles;
 pub mod map_water;
 #[doc(hidden)]
 pub mod mesh_tiles;
+mod minecraft;
 #[doc(hidden)]
 pub mod noise;
 #[doc(hidden)]
@@ -36,7 +41,8 @@ pub mod variants;
 pub mod vector_tiles;
 
 pub use analyze::AnalyzeJob;
-pub use blocks::{BlockFormat, BlocksJob};
+pub use blocks::BlocksJob;
+pub use blocks_format::BlockFormat;
 pub use grow::GrowJob;
 pub use map::{MapColors, MapJob};
 pub use render::RenderJob;

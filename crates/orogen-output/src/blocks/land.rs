@@ -23,7 +23,7 @@ pub const HALO: usize = 4;
 pub const COLUMN_BYTES: u64 = 32;
 
 /// Levels above the ground that a density may fill.
-const ROOM: i32 = 32;
+pub const ROOM: i32 = 32;
 
 /// Minimum depth of a lake in metres.
 const DEPTH: f32 = 0.01;

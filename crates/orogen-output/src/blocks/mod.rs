@@ -25,6 +25,8 @@ pub mod luanti;
 #[doc(hidden)]
 pub mod mesh;
 #[doc(hidden)]
+pub mod minecraft;
+#[doc(hidden)]
 pub mod picture;
 mod reach;
 #[doc(hidden)]
