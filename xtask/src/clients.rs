@@ -78,6 +78,7 @@ Only if named or with --all, because they take long or need large programs:
   grass     GRASS and gdaldem compute the same derived layers: wetness, insolation, viewshed, landforms ...
   azure     builds, caches and elevation models in Azurite's object store: the bytes of local files
   web       the studio as a page in Chromium: its land, changes, both languages, files; exports have the bytes of the command line
+  bevy      the example in Bevy without a window, with Mesa's software Vulkan: colliders have the heights of an export, a ball rolls on them
   godot     the library for Godot registers its classes with a stand-in for the engine; gdtoolkit reads the scripts of the example project
   faults    clippy on object stores, and builds, caches and elevation models in a store that fails every few requests
   wheel     the same tests of the Python package as the wheel that maturin makes
@@ -270,6 +271,15 @@ const CLIENTS: &[Client] = &[
         pip: &[NUMPY, PILLOW],
         npm: &["playwright-core@1.65.1"],
     },
+    Client {
+        name: "bevy",
+        apt: &[
+            ("/usr/share/doc/mesa-vulkan-drivers/copyright", "mesa-vulkan-drivers"),
+            ("/usr/share/doc/libvulkan1/copyright", "libvulkan1"),
+        ],
+        pip: &[NUMPY, PILLOW],
+        npm: &[],
+    },
     Client { name: "godot", apt: &[], pip: &[NUMPY, "gdtoolkit==4.5.0", "godot_parser==0.1.7"], npm: &[] },
     Client { name: "wheel", apt: &[], pip: &["maturin==1.16.0"], npm: &[] },
     Client { name: "nogil", apt: &[], pip: &["maturin==1.16.0"], npm: &[] },
@@ -372,6 +382,7 @@ const ON_REQUEST: &[&Step] = &[
         noted("azure", || script_for("azure", "remote"))
     }),
     &alone("web", "the studio as a page, in Chromium", || noted("web", web)),
+    &alone("bevy", "the example in Bevy, with software Vulkan", || noted("bevy", engines::check_bevy)),
     &alone("godot", "the library for Godot, and its example project", || noted("godot", engines::check_godot)),
     &alone("faults", "object stores that fail", || noted("faults", remote::check_faults)),
     &alone("wheel", "the Python package as a wheel", || noted("wheel", python::check_wheel)),

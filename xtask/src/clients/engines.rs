@@ -1,4 +1,5 @@
-//! The plugin for Godot. It is in a workspace of its own and takes long to compile, so it runs only if it is named.
+//! The plugin for Godot and the example in Bevy. Both are in a workspace of their own and take long to compile, so they
+//! run only if they are named.
 
 use std::path::{Path, PathBuf};
 
@@ -24,6 +25,13 @@ fn build(packages: &str) -> Result<PathBuf> {
     run("build", "")?;
     run("test", "-p orogen-engine-ground")?;
     Ok(target.join("debug"))
+}
+
+/// The example in Bevy, without a window.
+pub fn check_bevy() -> Result {
+    let built = build("-p orogen-bevy")?;
+    let binary = built.join(format!("orogen-bevy{}", std::env::consts::EXE_SUFFIX));
+    check("bevy", "OROGEN_BEVY", &binary)
 }
 
 /// The library for Godot, loaded by a stand-in for the engine.
