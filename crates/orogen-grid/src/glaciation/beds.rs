@@ -30,6 +30,8 @@ const MAX_DEPTH: f64 = 900.0;
 const CONFINING: f32 = 80.0;
 /// Largest distance from the river at which that ground is read, in metres.
 const AROUND: f32 = 600.0;
+/// And in samples.
+const MAX_STEPS: f32 = 64.0;
 
 /// Radius in metres of a cirque: the mean, and its variation.
 const CIRQUE: f32 = 380.0;
@@ -66,7 +68,7 @@ fn graded(cell: f64) -> usize {
 
 /// Number of samples on which a bed depends.
 pub fn reach(cell: f64) -> usize {
-    1 + (f64::from(AROUND) / cell).ceil() as usize + graded(cell) + passes(cell) + 2 * LIP
+    1 + (f64::from(AROUND) / cell).ceil().min(f64::from(MAX_STEPS)) as usize + graded(cell) + passes(cell) + 2 * LIP
 }
 
 impl Beds {
@@ -261,7 +263,7 @@ fn confinement(heights: &Grid, q: usize, half: f32) -> f32 {
     let (column, row) = ((q % width) as isize, (q / width) as isize);
     let around = STEPS.map(|(east, south)| {
         let length = if east * south == 0 { cell } else { std::f32::consts::SQRT_2 * cell };
-        let steps = (half.min(AROUND) / length).round().max(1.0) as isize;
+        let steps = (half.min(AROUND) / length).round().clamp(1.0, MAX_STEPS) as isize;
         let [i, j] = [column + steps * east, row + steps * south];
         let (i, j) = (i.clamp(0, width as isize - 1), j.clamp(0, heights.height() as isize - 1));
         heights.data()[j as usize * width + i as usize]

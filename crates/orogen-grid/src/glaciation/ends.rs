@@ -21,6 +21,8 @@ const STAGES: [(f32, f32); 3] = [(0.0, 1.0), (1.2, 0.6), (2.1, 0.4)];
 const FLANK: f32 = 4.0;
 /// Share of the moraines that the river has cut through. The others hold a lake.
 const CUT: f32 = 0.7;
+/// Greatest reach of a deposit from its line, in samples.
+const MAX_REACH: f64 = 160.0;
 /// How far outwash reaches down the valley, in metres.
 const OUTWASH: f64 = 2400.0;
 /// Thickness of outwash at the end of the glacier, as a share of the height of the moraine.
@@ -34,7 +36,12 @@ pub fn links(length: f64, cell: f64) -> usize {
 pub fn reach(cell: f64) -> usize {
     // A moraine is at most two radii from its stage, which is at most 64 samples from the end.
     let stages = links(f64::from(2.1 * MAX_RADIUS), cell) + links(UPSTREAM, cell);
-    2 + stages.max(links(OUTWASH, cell)) + (2.0 * f64::from(MAX_RADIUS) / cell).ceil() as usize
+    2 + stages.max(links(OUTWASH, cell)) + around(2.0 * MAX_RADIUS, cell)
+}
+
+/// A distance in samples; at very small cells deposits are cut off.
+fn around(distance: f32, cell: f64) -> usize {
+    (f64::from(distance) / cell).ceil().min(MAX_REACH) as usize
 }
 
 /// A place where a glacier has ended.
@@ -115,7 +122,7 @@ impl End {
         let flank = (FLANK * height).max(0.8 * cell);
         let floor = bare.data()[beds.sample[self.line[at]]];
         let is_cut = hash::unit(self.bits.rotate_left(13 * at as u32)) < CUT;
-        let reach = (2.0 * self.radius / cell).ceil() as usize;
+        let reach = around(2.0 * self.radius, window.cell);
         let (column, row) = (tip[0] as usize, tip[1] as usize);
         for j in row.saturating_sub(reach)..(row + reach + 1).min(window.height) {
             for i in column.saturating_sub(reach)..(column + reach + 1).min(width) {
@@ -154,7 +161,7 @@ impl End {
             }
             let left = 1.0 - link as f32 / count as f32;
             let (fill, river) = (THICKNESS * self.height * left * left, land.height.data()[q]);
-            let reach = (self.radius / cell).ceil() as usize;
+            let reach = around(self.radius, window.cell);
             for j in row.saturating_sub(reach)..(row + reach + 1).min(window.height) {
                 for i in column.saturating_sub(reach)..(column + reach + 1).min(width) {
                     let [east, south] = [i.abs_diff(column) as f32, j.abs_diff(row) as f32].map(|side| side * cell);

@@ -18,12 +18,15 @@ const FLAT: f32 = 0.2;
 const CIRQUE_STEEPNESS: f32 = 0.75;
 const CIRQUE_FLAT: f32 = 0.3;
 
+/// Greatest reach in samples: at very small cells troughs are narrower than their width says.
+const MAX_REACH: f64 = 320.0;
+
 /// Greatest distance of a line from its sample, in samples.
 const ASIDE: usize = 3;
 
 /// Reach of a trough of some half width, in samples.
 pub fn reach(half: f64, cell: f64) -> usize {
-    (f64::from(RIM) * half / cell).ceil() as usize + ASIDE + 1
+    (f64::from(RIM) * half / cell).ceil().min(MAX_REACH) as usize + ASIDE + 1
 }
 
 /// The troughs over a window.
@@ -41,8 +44,9 @@ struct Section {
     /// Column and row of the node.
     column: usize,
     row: usize,
-    /// Place of the line, in samples of the window.
-    place: [f32; 2],
+    /// Position of the line beside the node, in samples. It is not relative to the window, so that it is rounded in the
+    /// same way in every window.
+    aside: [f32; 2],
     bed: f32,
     half: f32,
     flat: f32,
@@ -56,10 +60,9 @@ impl Section {
         let (half, cirque) = (beds.half[node], beds.cirque[node]);
         let (half, flat, steepness) =
             if cirque > half { (cirque, CIRQUE_FLAT, CIRQUE_STEEPNESS) } else { (half, FLAT, STEEPNESS) };
-        let [east, south] = beds.aside[node];
-        let place = [column as f32 + east, row as f32 + south];
+        let aside = beds.aside[node];
         let reach = reach(f64::from(half), cell).min(max_reach);
-        Section { column, row, place, bed: beds.bed[node], half, flat: flat * half, steepness, reach }
+        Section { column, row, aside, bed: beds.bed[node], half, flat: flat * half, steepness, reach }
     }
 }
 
@@ -78,10 +81,10 @@ pub fn carved(glaciation: &Glaciation, beds: &Beds, window: &Window, progress: &
         let first = sections.partition_point(|section| section.row + max_reach < j);
         let near = sections[first..].iter().take_while(|section| section.row <= j + max_reach);
         for section in near.filter(|section| section.row.abs_diff(j) <= section.reach) {
-            let (i, reach) = (section.column, section.reach);
-            let south = j as f32 - section.place[1];
-            for i in i.saturating_sub(reach)..(i + reach + 1).min(width) {
-                let east = i as f32 - section.place[0];
+            let (column, reach) = (section.column, section.reach);
+            let south = j as f32 - section.row as f32 - section.aside[1];
+            for i in column.saturating_sub(reach)..(column + reach + 1).min(width) {
+                let east = i as f32 - section.column as f32 - section.aside[0];
                 let distance = (east * east + south * south).sqrt() * cell as f32;
                 let y = (distance - section.flat).max(0.0) / (section.half - section.flat);
                 if y <= RIM {

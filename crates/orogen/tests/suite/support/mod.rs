@@ -113,7 +113,7 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ("droplets", "lifetime") => Value::Number(7.5 * world.cell),
             ("droplets", "radius") => Value::Number(2.2 * world.cell),
             ("droplets", "density") => Value::Number(1e6 / (world.cell * world.cell)),
-            ("glaciate", "max_width") => Value::Number(9.0 * world.cell),
+            ("glaciate", "max_width") => Value::Number(5.0 * world.cell),
             ("select-height", "range") => pair(-0.1, 0.1),
             ("select-height", "falloff") => pair(0.3, 0.2),
             ("select-flow", "range") => pair(0.02, 0.1),
@@ -177,7 +177,7 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
         let (from, to) = ([-0.5, 0.5], [0.0, 8.5]);
         recipe.add("codes", Remap { source: Input::from("soft"), from, to, clamp: true });
         // The ice of glaciers, in m^2.
-        recipe.add("ice", Remap { source: Input::from("in0"), to: [-1e6, 2e7], ..Remap::default() });
+        recipe.add("ice", Remap { source: Input::from("in0"), to: [-2e6, 2e6], ..Remap::default() });
         recipe.change(|node| {
             if node.spec().op == spec.op {
                 node.set_input(input, Input::from("codes"));
