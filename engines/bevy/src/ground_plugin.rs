@@ -29,6 +29,8 @@ pub struct ShownGround {
     pub ground: Ground,
     /// Metres east and south of the world's origin, at the origin of the scene: positions stay small there.
     pub origin: [f64; 2],
+    /// The chunks.
+    pub lod: LodConfig,
     /// Whether the ground around the viewer is complete.
     pub is_complete: bool,
     material: Handle<StandardMaterial>,
@@ -55,6 +57,7 @@ impl Plugin for GroundPlugin {
                 app.insert_resource(ShownGround {
                     ground,
                     origin: self.origin,
+                    lod: self.lod,
                     is_complete: false,
                     material,
                     entities: HashMap::new(),

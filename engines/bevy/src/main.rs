@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use avian3d::prelude::*;
 use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::light::CascadeShadowConfigBuilder;
 use bevy::prelude::*;
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
@@ -74,7 +75,14 @@ fn run() -> Result<AppExit, String> {
 /// The sun.
 fn light(mut commands: Commands) {
     commands.spawn((
-        DirectionalLight { illuminance: 9_000.0, color: Color::srgb(1.0, 0.95, 0.86), ..default() },
+        DirectionalLight {
+            illuminance: 9_000.0,
+            color: Color::srgb(1.0, 0.95, 0.86),
+            shadow_maps_enabled: true,
+            ..default()
+        },
+        CascadeShadowConfigBuilder { maximum_distance: 0.3 * RANGE as f32, first_cascade_far_bound: 60.0, ..default() }
+            .build(),
         Transform::default().looking_to(Vec3::new(0.6, -0.55, -0.35), Vec3::Y),
     ));
 }
