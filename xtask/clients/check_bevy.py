@@ -1,4 +1,4 @@
-"""Checks the example for Bevy: a run without a window, with software Vulkan. Rays hit the colliders at the heights of an export, there are no gaps, the ball lies on the ground, and the picture shows ground and sky."""
+"""Checks the example for Bevy: a run without a window, with software Vulkan. Rays hit the colliders at the heights of an export, there are no gaps at the borders of chunks, the ball stays on the ground while it rolls over them, and the picture shows ground, sky and ball."""
 
 import os
 import subprocess
@@ -9,24 +9,28 @@ from orogen import WORK, Checks, orogen
 from PIL import Image
 
 checks = Checks()
-CELL, START, RADIUS = 2.0, (4000.0, 5000.0), 1.5
-# Frames of a sixtieth of a second, in which the ball rolls over several chunks of 128 m.
-FRAMES = 1500
+CELL, SIDE, RADIUS = 2.0, 128.0, 1.5
+# Near the corner of a chunk: the ball rolls to the north-east.
+START = (2545.0, 11914.0)
+# Frames of a sixtieth of a second, in which the ball rolls over several chunks.
+FRAMES = 1000
+# Metres on both sides of a border where rays fall too.
+BESIDE = 0.01
 
 
 def run():
-    """Runs the example; returns the rays and the ball."""
+    """Runs the example; returns its rays, the positions of the ball and the picture."""
     picture = WORK / "rolling.png"
-    line = [os.environ["OROGEN_BEVY"], "hills", "--at", "4000,5000", "--cell", str(CELL), "--frames", str(FRAMES), "--screenshot", picture]
+    at = ",".join(map(str, START))
+    line = [os.environ["OROGEN_BEVY"], "hills", "--at", at, "--cell", str(CELL), "--frames", str(FRAMES), "--screenshot", picture]
     done = subprocess.run(list(map(str, line)), capture_output=True, stdin=subprocess.DEVNULL, timeout=1800)
     told = done.stdout.decode()
     if done.returncode != 0:
         sys.exit(f"the example ended with {done.returncode}:\n{told[-3000:]}\n{done.stderr.decode()[-3000:]}")
-    errors = [text for text in (told + done.stderr.decode()).splitlines() if " ERROR " in text]
+    errors = [text for text in (told + done.stderr.decode()).splitlines() if "ERROR" in text]
     checks.equal("errors in the log", errors, [])
-    rays = [text.split()[1:] for text in told.splitlines() if text.startswith("ray ")]
-    (ball,) = [text.split()[1:] for text in told.splitlines() if text.startswith("ball ")]
-    return rays, list(map(float, ball)), picture
+    rays, ball = ([text.split()[1:] for text in told.splitlines() if text.startswith(word)] for word in ("ray ", "ball "))
+    return rays, numpy.array(ball, dtype=float), numpy.asarray(Image.open(picture).convert("RGB")).astype(int)
 
 
 def ground(points):
@@ -45,27 +49,46 @@ def ground(points):
     return numpy.where(x + z <= 1, near, far)
 
 
+def from_border(positions):
+    """The distances to the nearest borders of chunks."""
+    return abs(positions - SIDE * numpy.round(positions / SIDE))
+
+
 rays, ball, picture = run()
-checks.equal("rays", len(rays), 41 * 41)
 checks.equal("rays that find no ground", [ray for ray in rays if ray[2] == "none"], [])
 hits = numpy.array([list(map(float, ray)) for ray in rays if ray[2] != "none"])
 expect = ground(hits[:, :2])
-worst = numpy.abs(hits[:, 2] - expect).max()
+worst = abs(hits[:, 2] - expect).max()
 checks.that("rays hit the triangles of the samples, to a centimetre", worst < 0.01, worst)
-whole = (hits[:, :2] % CELL == 0).all(axis=1)
-checks.that("some rays hit samples, and some the borders of chunks", whole.sum() > 100 and (hits[:, :2] % (64 * CELL) == 0).any(axis=1).sum() > 5, whole.sum())
 checks.that("the land is not flat", numpy.ptp(expect) > 5, numpy.ptp(expect))
-x, y, z = ball
-clearance = y - ground(numpy.array([[x, z], [x, z]]))[0]
-checks.that("the ball lies on the ground", 0.9 * RADIUS < clearance < 2 * RADIUS, clearance)
-rolled = numpy.hypot(x - START[0], z - START[1])
-checks.that("the ball has rolled over the borders of chunks", rolled > 130, rolled)
-image = numpy.asarray(Image.open(picture).convert("RGB")).astype(int)
-checks.equal("picture: size", image.shape, (540, 960, 3))
-red, green, blue = image[..., 0], image[..., 1], image[..., 2]
+on = from_border(hits[:, :2]) == 0
+near = from_border(hits[:, :2]) < 2 * BESIDE
+checks.that("rays: count", len(rays) > 4000, len(rays))
+checks.that("rays: on borders both ways", on.sum(axis=0).min() >= 60, on.sum(axis=0))
+checks.that("rays: on corners of chunks", on.all(axis=1).any())
+checks.that("rays: closely on both sides of borders", (near & ~on).sum(axis=0).min() >= 120, (near & ~on).sum(axis=0))
+samples = (hits[:, :2] % CELL == 0).all(axis=1)
+checks.that("rays: on samples", samples.sum() > 400, samples.sum())
+
+way = ball[:, [0, 2]]
+chunks = numpy.floor(way / SIDE)
+crossed = abs(numpy.diff(chunks, axis=0)).sum(axis=0)
+checks.equal("ball: positions", len(ball), FRAMES // 10 + 1)
+checks.that("ball: crosses borders of chunks both ways", crossed.min() >= 1 and crossed.sum() >= 3, crossed)
+clearance = ball[:, 1] - ground(way)
+checks.that("ball: never sinks into the ground", clearance.min() > 0.95 * RADIUS, clearance.min())
+checks.that("ball: rolls, and does not fly", numpy.mean(clearance < 1.1 * RADIUS) > 0.8, numpy.sort(clearance))
+checks.that("ball: lies on the ground at the end", clearance[-1] < 1.1 * RADIUS, clearance[-1])
+
+checks.equal("picture: size", picture.shape, (540, 960, 3))
+red, green, blue = numpy.moveaxis(picture, 2, 0)
 sky = (blue > red + 15) & (blue > 120)
-checks.that("picture: sky above", sky[:40].mean() > 0.9, sky[:40].mean())
-checks.that("picture: ground below", sky[-200:].mean() < 0.02, sky[-200:].mean())
-checks.that("picture: the ball", ((red > green + 60) & (red > blue + 60)).sum() > 200, ((red > green + 60) & (red > blue + 60)).sum())
-checks.that("picture: light and shadow on the ground", image[-200:].std() > 5 and len(numpy.unique(image[-200:].reshape(-1, 3), axis=0)) > 500)
+orb = (red > green + 60) & (red > blue + 40)
+land = picture[-200:].astype(float)
+checks.that("picture: sky above", sky[:40].mean() > 0.99, sky[:40].mean())
+checks.that("picture: ground below", sky[-200:].mean() < 0.01, sky[-200:].mean())
+checks.that("picture: the ball", 1000 < orb.sum() < 20000, orb.sum())
+checks.that("picture: grass", (green[-200:] > blue[-200:] + 20).mean() > 0.8, (green[-200:] > blue[-200:] + 20).mean())
+checks.that("picture: light and dark", land.std(axis=(0, 1)).max() > 5, land.std(axis=(0, 1)))
+print(f"{len(rays)} rays, at most {1000 * worst:.2f} mm off; the ball crossed {crossed.sum():.0f} borders in {numpy.linalg.norm(way[-1] - way[0]):.0f} m, {clearance.min():.3f} to {clearance.max():.3f} m above the ground")
 checks.end()

@@ -12,7 +12,7 @@ pub const RADIUS: f32 = 1.5;
 const PUSH: f32 = 12.0;
 
 /// The place of the camera from the ball, in metres.
-const BEHIND: Vec3 = Vec3::new(-26.0, 15.0, 22.0);
+const BEHIND: Vec3 = Vec3::new(-17.0, 7.0, 12.0);
 
 /// The ball.
 #[derive(Component)]
@@ -52,7 +52,7 @@ pub fn drop_ball(
         ConstantForce::new(0.0, 0.0, 0.0),
         Mesh3d(meshes.add(Sphere::new(RADIUS).mesh().ico(5).unwrap_or_else(|_| Sphere::new(RADIUS).into()))),
         MeshMaterial3d(materials.add(Color::srgb(0.85, 0.22, 0.12))),
-        Transform::from_xyz(0.0, height + 2.0 * RADIUS, 0.0),
+        Transform::from_xyz(0.0, height + 1.1 * RADIUS, 0.0),
     ));
 }
 

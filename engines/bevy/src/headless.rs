@@ -1,4 +1,4 @@
-//! Frames without a window: the way of the ball, what rays hit, and a picture of the last frame, the only one drawn.
+//! Frames without a window: the way of the ball, what rays hit, and a picture at the end. Only the last frames are drawn.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -40,7 +40,7 @@ pub fn set_up(app: &mut App, frames: u32, screenshot: Option<PathBuf>) {
 fn picture(mut commands: Commands, mut images: ResMut<Assets<Image>>) {
     let [width, height] = SIZE;
     let image = images.add(Image::new_target_texture(width, height, TextureFormat::Rgba8UnormSrgb, None));
-    // It draws the last frame only: software takes a second for one, and the ground and the ball need none.
+    // It draws the last frames only: software takes a second for one, and the ground and the ball need none.
     let camera = (camera(), Camera { is_active: false, ..default() }, RenderTarget::Image(image.clone().into()));
     commands.spawn(camera);
     commands.insert_resource(Picture(image));
@@ -110,6 +110,8 @@ fn shoot(app: &mut App, path: PathBuf) -> AppExit {
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
     let mut cameras = app.world_mut().query::<&mut Camera>();
     cameras.iter_mut(app.world_mut()).for_each(|mut camera| camera.is_active = true);
+    // The frame before the picture makes what shaders need.
+    app.update();
     let picture = app.world().resource::<Picture>().0.clone();
     app.world_mut()
         .spawn(Screenshot::image(picture))

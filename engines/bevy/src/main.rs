@@ -15,6 +15,7 @@ use avian3d::prelude::*;
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::light::CascadeShadowConfigBuilder;
 use bevy::prelude::*;
+use bevy::render::RenderPlugin;
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
 use orogen::LodConfig;
@@ -46,11 +47,14 @@ fn run() -> Result<AppExit, String> {
     let is_headless = arguments.frames > 0;
     let mut app = App::new();
     let window = Window { title: "Orogen".into(), ..default() };
-    let plugins = DefaultPlugins.set(WindowPlugin {
-        primary_window: (!is_headless).then_some(window),
-        exit_condition: if is_headless { ExitCondition::DontExit } else { ExitCondition::OnAllClosed },
-        ..default()
-    });
+    let plugins = DefaultPlugins
+        .set(WindowPlugin {
+            primary_window: (!is_headless).then_some(window),
+            exit_condition: if is_headless { ExitCondition::DontExit } else { ExitCondition::OnAllClosed },
+            ..default()
+        })
+        // What has no pipeline yet is not drawn, and a picture waits for no second frame.
+        .set(RenderPlugin { synchronous_pipeline_compilation: is_headless, ..default() });
     match is_headless {
         true => app.add_plugins(plugins.disable::<WinitPlugin>()),
         false => app.add_plugins(plugins),
@@ -58,8 +62,8 @@ fn run() -> Result<AppExit, String> {
     let lod = LodConfig::default().with_cell(arguments.cell).with_range(RANGE);
     app.add_plugins((PhysicsPlugins::default(), GroundPlugin { world, origin: arguments.at, lod }))
         .insert_resource(ClearColor(SKY))
-        .insert_resource(GlobalAmbientLight { color: SKY, brightness: 700.0, ..default() })
-        .insert_resource(Push(if is_headless { Vec3::new(0.4, 0.0, 0.1) } else { Vec3::ZERO }))
+        .insert_resource(GlobalAmbientLight { color: SKY, brightness: 650.0, ..default() })
+        .insert_resource(Push(if is_headless { Vec3::new(0.5, 0.0, -0.35) } else { Vec3::ZERO }))
         .add_systems(Startup, light)
         .add_systems(Update, (drop_ball, push_ball, follow_ball).chain());
     if is_headless {
@@ -76,14 +80,14 @@ fn run() -> Result<AppExit, String> {
 fn light(mut commands: Commands) {
     commands.spawn((
         DirectionalLight {
-            illuminance: 9_000.0,
+            illuminance: 11_000.0,
             color: Color::srgb(1.0, 0.95, 0.86),
             shadow_maps_enabled: true,
             ..default()
         },
         CascadeShadowConfigBuilder { maximum_distance: 0.3 * RANGE as f32, first_cascade_far_bound: 60.0, ..default() }
             .build(),
-        Transform::default().looking_to(Vec3::new(0.6, -0.55, -0.35), Vec3::Y),
+        Transform::default().looking_to(Vec3::new(0.35, -0.5, 0.8), Vec3::Y),
     ));
 }
 

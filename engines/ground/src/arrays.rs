@@ -2,6 +2,8 @@
 
 use orogen::{Grid, Window};
 
+use crate::colors::colors_of;
+
 /// The order of the vertices of a triangle that is seen from above.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Winding {
@@ -26,7 +28,7 @@ pub struct ChunkArrays {
     pub positions: Vec<[f32; 3]>,
     /// Unit normals.
     pub normals: Vec<[f32; 3]>,
-    /// Colors by height and slope, linear RGB and 1.
+    /// Colors by height and slope, in patches of light and dark, linear RGB and 1.
     pub colors: Vec<[f32; 4]>,
     /// Triangles.
     pub indices: Vec<u32>,
@@ -71,8 +73,7 @@ impl ChunkArrays {
                 [-east / length, 1.0 / length, -south / length]
             })
             .collect();
-        let mut colors: Vec<[f32; 4]> =
-            heights.iter().zip(&normals).map(|(height, normal)| color(*height - sea_level, normal[1])).collect();
+        let mut colors = colors_of(window, &heights, &normals, sea_level);
         let mut indices = Vec::with_capacity(6 * width * height);
         let mut triangle = |corners: [usize; 3]| {
             let [a, b, c] = corners.map(|corner| corner as u32);
@@ -110,16 +111,6 @@ impl ChunkArrays {
     }
 }
 
-/// Sand at the shore, grass, rock where it is steep, snow high up.
-fn color(above_sea: f32, up: f32) -> [f32; 4] {
-    let blend = |from: f32, to: f32, at: f32| ((at - from) / (to - from)).clamp(0.0, 1.0);
-    let mix = |a: [f32; 3], b: [f32; 3], share: f32| std::array::from_fn(|k| a[k] + (b[k] - a[k]) * share);
-    let low: [f32; 3] = mix([0.30, 0.25, 0.13], [0.06, 0.14, 0.03], blend(1.0, 6.0, above_sea));
-    let high = mix(low, [0.70, 0.72, 0.76], blend(700.0, 900.0, above_sea));
-    let [red, green, blue] = mix([0.12, 0.11, 0.10], high, blend(0.72, 0.86, up));
-    [red, green, blue, 1.0]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -146,6 +137,10 @@ mod tests {
         assert_eq!(arrays.positions[4], [2.0, 10.0, 2.0]);
         assert_eq!(arrays.positions.len(), 12 + 10);
         assert_eq!([arrays.normals.len(), arrays.colors.len()], [22; 2]);
+        assert_eq!(
+            arrays.colors[..12],
+            colors_of(&Window::new(3, 4, 2.0).at(10, -5), &arrays.heights, &arrays.normals, 0.0)
+        );
         let [x, y, z] = arrays.normals[4];
         assert!((x / y + 1.5).abs() < 1e-6 && (z / y + 2.0).abs() < 1e-6, "{x} {y} {z}");
     }

@@ -5,6 +5,7 @@
 //! corner, so they stay exact far from the origin.
 
 mod arrays;
+mod colors;
 mod stream;
 
 pub use arrays::{ChunkArrays, Winding};
