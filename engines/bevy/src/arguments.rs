@@ -20,10 +20,10 @@ pub struct Arguments {
 pub const HELP: &str = "\
 orogen-bevy [WORLD] [--at X,Y] [--cell METRES] [--frames N] [--screenshot FILE.png]
 
-A ball rolls on the land. WORLD is a preset (default: endless), a recipe or a file of heights.
+A ball rolls on the land. WORLD is a preset (default: hills), a recipe or a file of heights.
 W, A, S and D push the ball; Space lifts it.
 
---at X,Y      metres east and south of the origin where the ball starts [default: 0,0]
+--at X,Y      metres east and south of the origin where the ball starts [default: 2545,11914]
 --cell M      distance between the finest samples, in metres [default: 2]
 --frames N    make N frames of a sixtieth of a second without a window, push the ball to the east, print
               what rays hit, and end
@@ -37,7 +37,8 @@ impl Arguments {
     }
 
     fn parse(given: impl IntoIterator<Item = String>) -> Result<Arguments, String> {
-        let mut arguments = Arguments { world: "endless".into(), at: [0.0; 2], cell: 2.0, frames: 0, screenshot: None };
+        let mut arguments =
+            Arguments { world: "hills".into(), at: [2545.0, 11914.0], cell: 2.0, frames: 0, screenshot: None };
         let mut given = given.into_iter();
         while let Some(argument) = given.next() {
             let mut value = || given.next().ok_or_else(|| format!("{argument} needs a value"));

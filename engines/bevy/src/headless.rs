@@ -1,4 +1,5 @@
-//! Frames without a window: the way of the ball, what rays hit, and a picture at the end. Only the last frames are drawn.
+//! Frames without a window: the way of the ball, what rays hit, and a picture at the end. Only the frames of the
+//! picture are drawn.
 
 use std::path::PathBuf;
 use std::time::Duration;
