@@ -25,9 +25,9 @@ W, A, S and D push the ball; Space lifts it.
 
 --at X,Y      metres east and south of the origin where the ball starts [default: 2545,11914]
 --cell M      distance between the finest samples, in metres [default: 2]
---frames N    make N frames of a sixtieth of a second without a window, push the ball to the east, print
-              what rays hit, and end
---screenshot  write the last of these frames
+--frames N    make N frames of a sixtieth of a second without a window, push the ball to the north-east,
+              print where it is and what rays hit, and end
+--screenshot  write a picture of the last frame
 ";
 
 impl Arguments {
