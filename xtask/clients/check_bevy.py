@@ -59,7 +59,8 @@ checks.equal("rays that find no ground", [ray for ray in rays if ray[2] == "none
 hits = numpy.array([list(map(float, ray)) for ray in rays if ray[2] != "none"])
 expect = ground(hits[:, :2])
 worst = abs(hits[:, 2] - expect).max()
-checks.that("rays hit the triangles of the samples, to a centimetre", worst < 0.01, worst)
+# Cells that are cut the other way are 1 mm off.
+checks.that("rays hit the triangles of the samples, to 0.2 mm", worst < 0.0002, worst)
 checks.that("the land is not flat", numpy.ptp(expect) > 5, numpy.ptp(expect))
 on = from_border(hits[:, :2]) == 0
 near = from_border(hits[:, :2]) < 2 * BESIDE
