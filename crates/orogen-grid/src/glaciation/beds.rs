@@ -257,7 +257,8 @@ fn depth(glaciation: &Glaciation, window: &Window, q: usize, ice: f64) -> f32 {
     (depth * MAX_DEPTH / (depth + MAX_DEPTH) * varied) as f32
 }
 
-/// How much the sides of a valley confine its glacier, 0 to 1: where the ground is level, ice spreads and erodes little.
+/// How much the sides of a valley confine its glacier, 0 to 1: where the ground is level, ice spreads and erodes
+/// little.
 fn confinement(heights: &Grid, q: usize, half: f32) -> f32 {
     let (width, cell) = (heights.width(), heights.window().cell as f32);
     let (column, row) = ((q % width) as isize, (q / width) as isize);

@@ -1,9 +1,9 @@
 //! Land shaped by glaciers: troughs with flat floors and steep walls, hanging side valleys, basins below the level of
 //! their outlets, cirques, sharp crests, end moraines and outwash plains.
 //!
-//! Glaciers follow the valleys of rivers. How much ice passes a point is a sum along the drainage, like a drainage area:
-//! the balance of snow that falls and ice that melts, positive above the equilibrium line and negative below it. The
-//! land is then a function of the heights, the receivers and that sum within a fixed distance.
+//! Glaciers follow the valleys of rivers. How much ice passes a point is a sum along the drainage, like a drainage
+//! area: the balance of snow that falls and ice that melts, positive above the equilibrium line and negative below it.
+//! The land is then a function of the heights, the receivers and that sum within a fixed distance.
 
 mod beds;
 mod ends;

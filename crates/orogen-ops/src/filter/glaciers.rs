@@ -19,8 +19,8 @@ op! {
         source: required,
         /// Flow direction, clockwise from east (0) to north-east (7), such as `drainage.receiver`.
         receiver: required,
-        /// The ice that passes, in m^2: the sum of the balance along the drainage, as for `glaciate`. Glaciers are where
-        /// it is at least 0.2 km^2.
+        /// The ice that passes, in m^2: the sum of the balance along the drainage, as for `glaciate`. Glaciers are
+        /// where it is at least 0.2 km^2.
         ice: required,
         /// Height of the equilibrium line in metres, above which more snow falls than melts.
         equilibrium_line: required,
