@@ -229,7 +229,8 @@ fn samples_of(land: &Glaciated) -> (Vec<u32>, Vec<usize>) {
     let mut node_of = vec![NOWHERE; land.height.data().len()];
     let mut sample = Vec::new();
     for j in 1..height.saturating_sub(1) {
-        for q in j * width + 1..((j + 1) * width).saturating_sub(1) {
+        for i in 1..width.saturating_sub(1) {
+            let q = j * width + i;
             let flows = (0.0..8.0).contains(&land.receiver.data()[q]);
             if flows && land.ice.data()[q] >= MIN_ICE * 1e6 && land.height.data()[q].is_finite() {
                 node_of[q] = sample.len() as u32;

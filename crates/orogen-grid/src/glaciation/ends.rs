@@ -93,7 +93,8 @@ impl End {
         let q = beds.sample[node];
         let (x, y) = (window.x + (q % window.width) as i64, window.y + (q / window.width) as i64);
         let bits = hash::node(glaciation.seed, DEPTH, x, y, 3);
-        (size > 0.0).then(|| End { node, line, radius, height: size * glaciation.moraines as f32, bits })
+        let height = size * glaciation.moraines as f32;
+        (height > 0.0).then_some(End { node, line, radius, height, bits })
     }
 
     /// Raises the ground to an arc across the valley, `stage` radii upstream of the end.

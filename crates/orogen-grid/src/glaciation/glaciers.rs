@@ -195,7 +195,7 @@ fn levelled(ground: &Grid, thickness: &Grid, progress: &Progress) -> Result<Grid
     let rows = out.data_mut().chunks_mut(width.max(1)).enumerate().skip(1).take(height.saturating_sub(2));
     parallel::try_for_each(rows, |(j, row)| {
         progress.check()?;
-        for i in 1..width.saturating_sub(1) {
+        for (i, out) in row.iter_mut().enumerate().skip(1).take(width.saturating_sub(2)) {
             let q = j * width + i;
             let (here, thick) = (ground.data()[q], thickness.data()[q]);
             if thick <= 0.0 {
@@ -211,7 +211,7 @@ fn levelled(ground: &Grid, thickness: &Grid, progress: &Progress) -> Result<Grid
                 }
             }
             let mean = if count > 0.0 { 0.5 * (here + thick) + 0.5 * sum / count } else { here + thick };
-            row[i] = (mean.min(bound) - here).max(0.0);
+            *out = (mean.min(bound) - here).max(0.0);
         }
         Ok(())
     })?;

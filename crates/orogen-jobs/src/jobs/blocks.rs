@@ -213,7 +213,7 @@ impl BlocksJob {
         let [reading, writing] = progress.parts([1.0, 9.0]);
         let save = MinecraftSave::new(world, window, self.exaggeration, self.sea_y, &reading)?;
         let (finite, levels) = (save.finite, save.placement.levels());
-        let content = Content::Minecraft(save);
+        let content = Content::Minecraft(Box::new(save));
         let job = self.clone();
         Ok(MadeBlocks { job, world, window: *window, finite, levels, content, writing, _reserved: Vec::new() })
     }
@@ -251,7 +251,7 @@ pub struct MadeBlocks<'w> {
 enum Content {
     Mesh(BlockMesh),
     Volume(BlockVolume),
-    Minecraft(MinecraftSave),
+    Minecraft(Box<MinecraftSave>),
 }
 
 impl MadeBlocks<'_> {

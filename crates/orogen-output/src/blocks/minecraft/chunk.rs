@@ -134,8 +134,11 @@ fn tags(land: &Land, [x, z]: [i64; 2], blocks: &[u8]) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// Whether a block stops what a height map is of.
+type Stops = fn(Block) -> bool;
+
 /// The height maps, with the blocks that count in each; bedrock counts like stone.
-const HEIGHT_MAPS: [(&str, fn(Block) -> bool); 4] = [
+const HEIGHT_MAPS: [(&str, Stops); 4] = [
     ("MOTION_BLOCKING", |block| block != Block::Air),
     ("MOTION_BLOCKING_NO_LEAVES", |block| !matches!(block, Block::Air | Block::Leaves | Block::Needles)),
     ("OCEAN_FLOOR", Block::is_solid),
