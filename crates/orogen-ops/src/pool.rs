@@ -1,7 +1,7 @@
 //! The thread pool.
 //!
 //! On WebAssembly, a program has no threads of its own. If it is compiled for shared memory (the target feature
-//! `atomics`), its host can start other instances of it with the same memory, and [lend](lend_thread) their threads.
+//! `atomics`), its host can start other instances of it with the same memory, and lend their threads by `lend_thread`.
 
 #[cfg(not(all(feature = "threads", any(not(target_family = "wasm"), target_feature = "atomics"))))]
 mod single;
