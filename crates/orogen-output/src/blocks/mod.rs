@@ -44,7 +44,6 @@ pub mod vox;
 pub use kind::{Block, BlockKind};
 pub use land::Land;
 pub use levels::{Extent, Levels};
-pub use luanti::LuantiWorld;
 pub use mesh::BlockMesh;
 pub use picture::Isometric;
 pub use section::Section;
