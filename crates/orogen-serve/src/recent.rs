@@ -22,26 +22,30 @@ impl<T> Recent<T> {
 
     /// An entry; it becomes the latest one.
     pub fn find(&self, key: &str) -> Option<Arc<T>> {
-        let mut entries = self.lock();
-        let at = entries.iter().position(|(own, _)| own == key)?;
-        let found = entries.remove(at);
-        let entry = Arc::clone(&found.1);
-        entries.push(found);
-        Some(entry)
+        latest(&mut self.lock(), key)
     }
 
     /// Keeps an entry, unless another thread has kept one under this key meanwhile: then that is the result.
     pub fn keep(&self, key: &str, entry: T) -> Arc<T> {
-        if let Some(found) = self.find(key) {
+        let mut entries = self.lock();
+        if let Some(found) = latest(&mut entries, key) {
             return found;
         }
         let entry = Arc::new(entry);
-        let mut entries = self.lock();
         entries.push((key.to_string(), Arc::clone(&entry)));
         let excess = entries.len().saturating_sub(self.most);
         entries.drain(..excess);
         entry
     }
+}
+
+/// An entry, which becomes the latest one.
+fn latest<T>(entries: &mut Vec<(String, Arc<T>)>, key: &str) -> Option<Arc<T>> {
+    let at = entries.iter().position(|(own, _)| own == key)?;
+    let found = entries.remove(at);
+    let entry = Arc::clone(&found.1);
+    entries.push(found);
+    Some(entry)
 }
 
 #[cfg(test)]

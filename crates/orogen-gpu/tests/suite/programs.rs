@@ -194,7 +194,7 @@ fn a_device_that_is_lost_with_its_grids_leaves_the_work_to_the_processor() {
     assert!(gpu.failure().is_some_and(|failure| failure.to_string().contains("lost")));
 }
 
-/// Presets whose lakes take about ten seconds each with a software driver. `glaciers` needs larger buffers than it has.
+/// Presets whose solvers take about ten seconds each with a software driver.
 const SLOW: [&str; 7] = ["badlands", "canyon", "fjords", "glaciers", "himalaya", "hills", "rolling"];
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::Glaciated;
 use super::ends::links;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 use crate::grid::{Grid, Window};
 use crate::hydrology::direction::{DISTANCES, strides};
 use crate::parallel;
@@ -66,10 +66,7 @@ impl Glaciers {
     /// # Errors
     /// If the grids have different windows, or the work is cancelled.
     pub fn run(&self, land: &Glaciated, progress: &Progress) -> Result<Grid> {
-        let window = *land.height.window();
-        if [land.receiver, land.ice, land.equilibrium_line].iter().any(|grid| *grid.window() != window) {
-            return Err(Error::new(ErrorKind::Request, "the land and its ice must have the same window"));
-        }
+        let window = land.window()?;
         progress.expect(4.0);
         let surface = self.surface_of_lines(land, progress)?;
         progress.step(1.0)?;

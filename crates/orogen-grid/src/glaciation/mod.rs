@@ -12,7 +12,7 @@ mod troughs;
 mod walls;
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::grid::Grid;
+use crate::grid::{Grid, Window};
 use crate::progress::Progress;
 use beds::Beds;
 pub use glaciers::Glaciers;
@@ -68,6 +68,17 @@ pub struct Glaciated<'a> {
 /// The width of a trough grows with the ice to this power.
 const WIDTH_EXPONENT: f64 = 0.32;
 
+impl Glaciated<'_> {
+    /// The window of all grids.
+    fn window(&self) -> Result<Window> {
+        let window = *self.height.window();
+        if [self.receiver, self.ice, self.equilibrium_line].iter().any(|grid| *grid.window() != window) {
+            return Err(Error::new(ErrorKind::Request, "the land and its ice must have the same window"));
+        }
+        Ok(window)
+    }
+}
+
 /// Ice of the smallest glaciers, in km^2.
 const MIN_ICE: f32 = 0.6;
 
@@ -95,10 +106,7 @@ impl Glaciation {
     /// # Errors
     /// If the grids have different windows, or the work is cancelled.
     pub fn run(&self, land: &Glaciated, progress: &Progress) -> Result<Grid> {
-        let window = *land.height.window();
-        if [land.receiver, land.ice, land.equilibrium_line].iter().any(|grid| *grid.window() != window) {
-            return Err(Error::new(ErrorKind::Request, "the land and its ice must have the same window"));
-        }
+        let window = land.window()?;
         progress.expect(10.0);
         let beds = Beds::new(self, land);
         progress.step(4.0)?;

@@ -59,12 +59,7 @@ impl Filter for Glaciate {
     }
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
-        let land = Glaciated {
-            height: inputs.required("source")?,
-            receiver: inputs.required("receiver")?,
-            ice: inputs.required("ice")?,
-            equilibrium_line: inputs.required("equilibrium_line")?,
-        };
+        let land = glaciated(inputs)?;
         let out = only_layer(out)?;
         if window.is_empty() {
             return Ok(());
@@ -80,6 +75,16 @@ impl Filter for Glaciate {
     fn cost(&self, cell: f64) -> f64 {
         200.0 + 20.0 * (self.max_width / cell).min(200.0)
     }
+}
+
+/// The land and its ice, which the ops of glaciers read.
+pub(super) fn glaciated<'a>(inputs: &GridInputs<'a>) -> Result<Glaciated<'a>> {
+    Ok(Glaciated {
+        height: inputs.required("source")?,
+        receiver: inputs.required("receiver")?,
+        ice: inputs.required("ice")?,
+        equilibrium_line: inputs.required("equilibrium_line")?,
+    })
 }
 
 impl Glaciate {

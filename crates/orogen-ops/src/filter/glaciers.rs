@@ -1,10 +1,11 @@
 //! Glaciers on land.
 
+use super::glaciate::glaciated;
 use crate::budget::memory;
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Filter, GridInputs, WorldParams, only_layer};
 use orogen_grid::error::Result;
-use orogen_grid::glaciation::{Glaciated, Glaciers as Law};
+use orogen_grid::glaciation::Glaciers as Law;
 use orogen_grid::grid::{Grid, Window};
 
 op! {
@@ -43,12 +44,7 @@ impl Filter for Glaciers {
     }
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
-        let land = Glaciated {
-            height: inputs.required("source")?,
-            receiver: inputs.required("receiver")?,
-            ice: inputs.required("ice")?,
-            equilibrium_line: inputs.required("equilibrium_line")?,
-        };
+        let land = glaciated(inputs)?;
         let out = only_layer(out)?;
         if window.is_empty() {
             return Ok(());

@@ -5,6 +5,7 @@ mod files;
 #[cfg(feature = "window")]
 mod gpu;
 mod group;
+mod message;
 mod storage;
 mod worker;
 

@@ -16,6 +16,7 @@ use web_sys::MessageEvent;
 
 use super::super::Task;
 use super::group::WorkerGroup;
+use super::message::array;
 use super::{Instant, SHARES_MEMORY, files, storage};
 
 /// How long a cancelled task may go on.
@@ -91,11 +92,6 @@ pub fn start<T: Task>(
     };
     DESKS.with_borrow_mut(|desks| desks[usize::from(!T::IS_URGENT)].waiting.push_back(job));
     Ok(())
-}
-
-/// The parts of a message.
-pub fn array(parts: &[JsValue]) -> Array {
-    parts.iter().cloned().collect()
 }
 
 fn failed(message: &str) -> Error {

@@ -10,7 +10,7 @@ use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
 use web_sys::{Worker, WorkerOptions, WorkerType};
 
-use super::desk::array;
+use super::message::array;
 use super::{SHARES_MEMORY, warn};
 
 /// The script of a worker.

@@ -11,7 +11,7 @@ use orogen::{Budget, Options, Progress, Session};
 use wasm_bindgen::{JsCast as _, JsValue};
 use web_sys::DedicatedWorkerGlobalScope;
 
-use super::desk::array;
+use super::message::array;
 use super::{Instant, MEMORY, clock, warn};
 
 /// Runs the task of this name with these bytes; the last argument receives the bytes of its events.
