@@ -1,8 +1,8 @@
 //! Benchmarks of Orogen against its peers and physical limits, measured in one run. `cargo xtask bench` is the front
 //! end.
 //!
-//! Prints one JSON object, {"area", "simd", "threads", "rows"}; area `water` prints a table. Progress goes to standard
-//! error.
+//! Prints one JSON object, {"area", "simd", "threads", "rows"}; areas `valleys` and `water` print a table. Progress goes
+//! to standard error.
 #![forbid(unsafe_code)]
 
 mod erosion;
@@ -22,6 +22,7 @@ mod serve;
 mod sizes;
 mod studio;
 mod tiles;
+mod valleys;
 mod water;
 mod world;
 
@@ -53,6 +54,11 @@ fn main() -> ExitCode {
         && area == "water"
     {
         return finished(water::run(rest));
+    }
+    if let [area, rest @ ..] = args.as_slice()
+        && area == "valleys"
+    {
+        return finished(valleys::run(rest));
     }
     finished(run(&args).map(|report| println!("{report:#}")))
 }

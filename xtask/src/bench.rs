@@ -13,7 +13,8 @@ pub const ABOUT: &str = "compare with other libraries and the machine's limits; 
 
 pub const HELP: &str = "
 Usage: cargo xtask bench [AREA] [--json FILE] [--case TEXT] [--quick]
-       cargo xtask bench realism --score SCRIPT --dems DIR [--first SEED] [--case TEXT]
+       cargo xtask bench realism --score SCRIPT --dems DIR [--half HALF] [--first SEED] [--case TEXT]
+       cargo xtask bench valleys SOURCE... [--seed N] [--cell M] [--window X,Y,W,H]
        cargo xtask bench water RECIPE [--seed N] [--cell M] [--origin X,Y] [--side N] [--pairs N] [--pair-side N] [--near N] [--fresh]
 
 Builds the benches at full optimization, measures one area (or all in turn) and prints a table.
@@ -41,12 +42,21 @@ Builds the benches at full optimization, measures one area (or all in turn) and 
   --case TEXT  only cases whose name contains TEXT
   --quick      few repetitions: only to check that it runs
 
-Area realism, only if it is named: compares alpine, himalaya and endless with real places, and five presets with land of their type, 16 seeds each; fails if a
-target is missed.
+Area realism, only if it is named: compares mountains with all real places, and every preset with land of its type, 16 seeds each; fails if a target is
+missed.
 
   --score SCRIPT  the script that compares rasters, with its list of types beside it (Python; OROGEN_REALISM names one that has numpy, scipy, rasterio and numba)
   --dems DIR      the real places, GeoTIFFs of 30 to 90 m
+  --half HALF     first or second: compares with every second region of each type only; what is tuned on one half is reported on the other
   --first SEED    the first of the seeds [default: from the clock]
+
+Area valleys, only if it is named: measures the form of valleys: the exponent of their cross sections (1 is a V, 2 a parabola) along rivers of 5 to 300 km2,
+and the steps at the mouths of tributaries, the fall of their last 1.2 km beyond what the 1.2 km above them let expect.
+
+  SOURCE            presets, recipe files and files of heights, real ones too
+  --seed N          seed of presets [default: the recipe's]
+  --cell M          cell in metres [default: that of the recipe or file]
+  --window X,Y,W,H  first column and row, columns and rows [default: the whole world]
 
 Area water, only if it is named: measures the water of a recipe on 3 x 3 tiles that are made apart: depressions, beds of rivers, agreement of D8 on
 the heights with `flow`, rivers at the borders of tiles; fails if a target is missed.
@@ -77,8 +87,9 @@ const GPU: &str = "gpu";
 /// An area that needs files that are not part of the project, so it is measured only if it is named.
 const REALISM: &str = "realism";
 
-/// An area that measures one recipe, so it runs only if it is named.
+/// Areas that measure recipes, so they run only if they are named.
 const WATER: &str = "water";
+const VALLEYS: &str = "valleys";
 
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Options {
@@ -93,7 +104,7 @@ struct Options {
 /// Runs the measurements.
 pub fn run(args: &[String]) -> Result {
     if let [area, rest @ ..] = args
-        && area == WATER
+        && [WATER, VALLEYS].contains(&area.as_str())
     {
         let mut command = shell::cargo("run --quiet --release --package orogen-bench --");
         return shell::run(command.arg(area).args(rest));
@@ -143,6 +154,7 @@ fn parse(args: &[String]) -> Result<Options> {
                 options.realism.case = Some(text.clone());
                 options.passed.extend([arg.clone(), text]);
             }
+            "--half" => options.realism.half = Some(realism::Half::parse(&value()?)?),
             "--score" => options.realism.score = Some(value()?.into()),
             "--dems" => options.realism.dems = Some(value()?.into()),
             "--first" => {
@@ -157,7 +169,7 @@ fn parse(args: &[String]) -> Result<Options> {
             flag if flag.starts_with('-') => return Err(Failure::usage(format!("there is no option '{flag}'"))),
             other => {
                 return Err(Failure::usage(format!(
-                    "there is no area '{other}'; there are: {}, {REALISM}, {WATER}",
+                    "there is no area '{other}'; there are: {}, {REALISM}, {VALLEYS}, {WATER}",
                     AREAS.join(", ")
                 )));
             }
@@ -187,6 +199,7 @@ mod tests {
             ("nois", "there is no area 'nois'; there are: noise, erosion, generate"),
             ("--json", "--json needs a value"),
             ("realism --first x", "'x' is no seed"),
+            ("realism --half third", "not 'third'"),
             ("noise --fast", "no option '--fast'"),
         ] {
             let failure = parsed(line).expect_err(expect);

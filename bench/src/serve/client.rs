@@ -21,12 +21,17 @@ pub struct Server {
 impl Server {
     /// Serves worlds with these options.
     pub fn start(arguments: &[&str]) -> Result<Server, String> {
+        Server::start_with(arguments, &[])
+    }
+
+    /// Serves worlds with these options, in a process with these variables.
+    pub fn start_with(arguments: &[&str], variables: &[(&str, &str)]) -> Result<Server, String> {
         let program = std::env::var_os(PROGRAM)
             .map(PathBuf::from)
             .ok_or_else(|| format!("{PROGRAM} is not set: run `cargo xtask bench serve`"))?;
         let failed = |cause: std::io::Error| format!("{}: {cause}", program.display());
         let mut command = Command::new(&program);
-        command.arg("serve").args(arguments).args(["--port", "0", "--quiet"]);
+        command.arg("serve").args(arguments).args(["--port", "0", "--quiet"]).envs(variables.iter().copied());
         let mut process = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().map_err(failed)?;
         let mut line = String::new();
         if let Some(output) = process.stdout.take() {

@@ -7,7 +7,7 @@ use crate::erosion::power::power;
 use std::f32::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// Half-width, in metres, of the floors of the smallest rivers that have floors.
-pub const FLOOR_WIDTH: f32 = 100.0;
+pub const FLOOR_WIDTH: f32 = 75.0;
 
 /// Maximum slope of a floor.
 const FLOOR_SLOPE: f32 = 0.02;

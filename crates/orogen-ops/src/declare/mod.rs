@@ -31,14 +31,17 @@ pub mod spec;
 #[doc(hidden)]
 pub mod strokes;
 
+/// Noise of the octaves of fractals. A module, because the pages of a crate that is passed on are not hidden.
+#[doc(hidden)]
+pub mod noise {
+    pub use orogen_noise::*;
+}
+
 pub use declared::Declared;
 pub use input::{Input, InputName};
 #[doc(hidden)]
 pub use input::{named, set_named};
 pub use orogen_io::dem::file_ref::{AreaFile, FileRef, LineFile};
-/// Noise of the octaves of fractals.
-#[doc(hidden)]
-pub use orogen_noise as noise;
 #[doc(hidden)]
 pub use param::AnyParam;
 pub use param::{Param, read_param};
