@@ -1,8 +1,8 @@
 //! Benchmarks of Orogen against its peers and physical limits, measured in one run. `cargo xtask bench` is the front
 //! end.
 //!
-//! Prints one JSON object, {"area", "simd", "threads", "rows"}; areas `valleys` and `water` print a table. Progress goes
-//! to standard error.
+//! Prints one JSON object, {"area", "simd", "threads", "rows"}; areas `valleys` and `water` print a table. Progress
+//! goes to standard error.
 #![forbid(unsafe_code)]
 
 mod erosion;

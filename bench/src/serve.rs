@@ -304,8 +304,8 @@ const GIVE_BACK: [(&str, &str); 3] =
     [("MALLOC_ARENA_MAX", "2"), ("MALLOC_MMAP_THRESHOLD_", "65536"), ("MALLOC_TRIM_THRESHOLD_", "65536")];
 
 /// By how much the memory grows in nine minutes, in percent, after two minutes and enough requests to fill the caches
-/// of a slow machine, too. What is read is the memory between two minutes of requests: during them it holds what is being
-/// answered. Each end is the median of three.
+/// of a slow machine, too. What is read is the memory between two minutes of requests: during them it holds what is
+/// being answered. Each end is the median of three.
 fn soak(options: &Options) -> Result<f64, String> {
     let server = Server::start_with(&["alpine", "endless", "--memory", MEMORY], &GIVE_BACK)?;
     let minute = Duration::from_secs_f64(seconds(options, 60.0));
