@@ -64,6 +64,10 @@ pub mod autotile;
 mod checks;
 pub mod climate;
 pub mod contour;
+#[doc(hidden)]
+pub mod craters;
+#[doc(hidden)]
+pub mod dunes;
 pub mod erosion;
 pub mod error;
 #[doc(hidden)]

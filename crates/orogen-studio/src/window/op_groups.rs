@@ -36,7 +36,10 @@ pub static ALL: [OpGroup; 9] = [
             "gullies",
         ],
     ),
-    group("ops.land", &["continents", "amplify", "dla", "dem", "radial", "edge", "ramp", "constant", "altitude"]),
+    group(
+        "ops.land",
+        &["continents", "amplify", "dla", "dem", "craters", "radial", "edge", "ramp", "constant", "altitude"],
+    ),
     group("ops.draw", &["path", "polygon", "paint", "image", "label"]),
     group("ops.combine", &["add", "multiply", "mix", "min", "max", "expr"]),
     group(
@@ -58,7 +61,17 @@ pub static ALL: [OpGroup; 9] = [
     ),
     group(
         "ops.erosion",
-        &["stream-power", "local-stream-power", "pipes", "droplets", "thermal", "soil-depth", "glaciate", "glaciers"],
+        &[
+            "stream-power",
+            "local-stream-power",
+            "pipes",
+            "droplets",
+            "thermal",
+            "soil-depth",
+            "glaciate",
+            "glaciers",
+            "dunes",
+        ],
     ),
     group(
         "ops.water",

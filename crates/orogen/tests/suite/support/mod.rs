@@ -114,6 +114,13 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ("droplets", "radius") => Value::Number(2.2 * world.cell),
             ("droplets", "density") => Value::Number(1e6 / (world.cell * world.cell)),
             ("glaciate", "max_width") => Value::Number(5.0 * world.cell),
+            ("craters", "diameters") => pair(2.3 * world.cell, 50.0 * world.cell),
+            ("craters", "transition") => Value::Number(20.0 * world.cell),
+            ("craters", "diffusion") => Value::Number(5.0 * world.cell * world.cell),
+            ("dunes", "wavelength") => Value::Number(9.0 * world.cell),
+            // Some thirty steps.
+            ("dunes", "years") => Value::Number(0.036 * world.cell * world.cell),
+            ("dunes", "wind_spread") => Value::Number(40.0),
             ("select-height", "range") => pair(-0.1, 0.1),
             ("select-height", "falloff") => pair(0.3, 0.2),
             ("select-flow", "range") => pair(0.02, 0.1),
