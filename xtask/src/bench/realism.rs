@@ -97,8 +97,9 @@ const CASES: &[Case] = &[
     case("endless", Made::From([-512, -512]), &[ENDLESS]),
     // 10 000 km from the origin, across the borders of the tiles of all levels.
     Case { preset: "endless", name: "endless, 10 000 km out", made: Made::Highest([FAR, -FAR]), beside: &[ENDLESS] },
-    case("rolling", Made::World(30), &[land("rolling_hills")]),
-    case("hills", Made::World(30), &[land("rolling_hills")]),
+    // Their real windows have cells of 10 to 90 m.
+    case("rolling", Made::World(45), &[land("rolling_hills")]),
+    case("hills", Made::World(45), &[land("rolling_hills")]),
     case("island", Made::World(40), &[land("islands_coasts")]),
     case("archipelago", Made::World(40), &[land("islands_coasts")]),
     case("volcano", Made::World(40), &[land("volcanoes")]),
