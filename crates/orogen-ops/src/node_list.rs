@@ -26,6 +26,7 @@ nodes! {
         Mix,
         Multiply,
         OpenSimplex2,
+        Outcrop,
         Paint,
         Path,
         Perlin,

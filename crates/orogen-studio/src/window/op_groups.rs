@@ -94,6 +94,7 @@ pub static ALL: [OpGroup; 9] = [
             "orographic-rain",
             "evapotranspiration",
             "biome",
+            "outcrop",
         ],
     ),
 ];
