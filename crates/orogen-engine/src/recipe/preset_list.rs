@@ -11,6 +11,7 @@
     Preset { name: "dla-peaks", text: include_str!("../../recipes/dla-peaks.toml") },
     Preset { name: "endless", text: include_str!("../../recipes/endless.toml") },
     Preset { name: "fjords", text: include_str!("../../recipes/fjords.toml") },
+    Preset { name: "folds", text: include_str!("../../recipes/folds.toml") },
     Preset { name: "glaciers", text: include_str!("../../recipes/glaciers.toml") },
     Preset { name: "hills", text: include_str!("../../recipes/hills.toml") },
     Preset { name: "himalaya", text: include_str!("../../recipes/himalaya.toml") },
