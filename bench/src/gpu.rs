@@ -68,7 +68,7 @@ pub fn run(options: &Options) -> Result<Value, String> {
     }
     if is_wanted("preview") {
         let mut times = bench.previews()?;
-        let case = "mesa, 1024 x 1024 after a slider's move: heights in memory".to_string();
+        let case = "terraces, 1024 x 1024 after a slider's move: heights in memory".to_string();
         row(Figure { case, ours: median(&mut times), unit: "s", other: None, target: Target::AtMost(PREVIEW) });
     }
     for (part, about) in [
@@ -99,6 +99,8 @@ pub fn run(options: &Options) -> Result<Value, String> {
 }
 
 const FBM: &str = "orogen = 1\n[nodes.land]\nop = \"fbm\"\nwavelength = 1000\n[outputs]\nheight = \"land\"\n";
+
+const TERRACES: &str = include_str!("terraces.toml");
 
 const PIPES: &str = "orogen = 1\n[nodes.hills]\nop = \"fbm\"\nwavelength = 5000\n[nodes.heights]\nop = \"multiply\"\na = \"hills\"\nb = 800\n\
     [nodes.land]\nop = \"pipes\"\nsource = \"heights\"\niterations = 100\n[outputs]\nheight = \"land\"\n";
@@ -134,12 +136,11 @@ impl Bench {
         Ok(median(&mut times))
     }
 
-    /// The seconds from a changed parameter of a preset to its heights.
+    /// The seconds from a changed parameter of a recipe of fields and a filter to its heights.
     fn previews(&self) -> Result<Vec<f64>, String> {
-        let preset = presets::find("mesa").ok_or("no such preset")?;
         let mut times = Vec::new();
         for k in 0..=self.repetitions {
-            let mut recipe = preset.recipe().map_err(|e| e.to_string())?;
+            let mut recipe = Recipe::parse(TERRACES, "terraces.toml").map_err(|e| e.to_string())?;
             recipe.world.seed = k as u64;
             let begun = Instant::now();
             let world = self.card.open(recipe).map_err(|e| e.to_string())?;

@@ -24,7 +24,7 @@ Written by `cargo xtask resolution`.
 
 - *Shared* compares the samples that both grids have: every 2nd, 4th or 8th of the finer grid.
   Fields and results of solvers are bit-equal there: 0.
-  A filter is computed at the requested cell, so its results differ; `resample` or `bake` [fixes it at one cell](recipes.md#filters-at-a-fixed-cell), as `mesa` does.
+  A filter is computed at the requested cell, so its results differ; `resample` or `bake` [fixes it at one cell](recipes.md#filters-at-a-fixed-cell).
   A levelled op (`continents`) answers with a coarser level, which has the same rivers and ranges without their finest valleys.
 - *Everywhere* compares all samples of the finer grid with the coarser grid, interpolated with the engine's interpolating cubic.
   The difference is mostly the detail smaller than two of the larger cells.

@@ -27,6 +27,7 @@ nodes! {
         Mix,
         Multiply,
         OpenSimplex2,
+        Outcrop,
         Paint,
         Path,
         Perlin,

@@ -12,4 +12,5 @@ mod points_in_recipes;
 mod previews;
 mod rain;
 mod shares;
+mod strata_in_recipes;
 mod strokes_in_recipes;

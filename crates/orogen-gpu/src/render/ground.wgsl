@@ -28,6 +28,19 @@ fn between(start: u32, place: vec2<f32>) -> vec4<f32> {
     return mix(mix(quad_of(at), quad_of(at + 4u), uv.x), mix(quad_of(below), quad_of(below + 4u), uv.x), uv.y);
 }
 
+// The height above the surface that the layers of rock follow, of a point at this height.
+fn above_bedding(place: vec2<f32>, height: f32) -> f32 {
+    if (data[HAS_BEDDING] == 0u) {
+        return height;
+    }
+    let cell = cell_at(place);
+    let uv = clamp(place, land_low, land_high) - vec2<f32>(cell - origin);
+    let at = data[BEDDING] + u32(cell.y * land_columns + cell.x);
+    let below = at + u32(land_columns);
+    let north = mix(samples[at], samples[at + 1u], uv.x);
+    return height - mix(north, mix(samples[below], samples[below + 1u], uv.x), uv.y);
+}
+
 // Whether the nearest sample has no finite height.
 fn is_missing(place: vec2<f32>) -> bool {
     if (data[HAS_MISSING] == 0u) {
@@ -120,7 +133,7 @@ fn natural(site: Site, shape: vec4<f32>, noise: vec4<f32>) -> Coat {
     let rough_edge = 0.6 * middle + 0.4 * small + 0.25 * fine;
 
     // Rock: partly grayer and browner, with faint beds.
-    let bed = plain_grain((site.height + 25.0 * wide + 6.0 * middle) / 70.0, 0.53, 6u);
+    let bed = plain_grain((above_bedding(site.place, site.height) + 25.0 * wide + 6.0 * middle) / 70.0, 0.53, 6u);
     let shade = 0.5 + 0.30 * wide + 0.25 * middle + 0.25 * small + 0.30 * fine + 0.22 * bed;
     let rock = blend(ROCK_DARK, ROCK_LIGHT, shade);
     let scree = blend(SCREE_DARK, SCREE_LIGHT, 0.5 + 0.4 * small + 0.4 * fine);
@@ -178,7 +191,7 @@ fn desert(site: Site, shape: vec4<f32>, noise: vec4<f32>) -> Coat {
     let small = noise.z;
     let fine = noise.w;
     // Beds of some metres within beds of some tens of metres.
-    let at = (site.height + 14.0 * wide + 3.0 * middle) / 42.0;
+    let at = (above_bedding(site.place, site.height) + 14.0 * wide + 3.0 * middle) / 42.0;
     let bed = plain_grain(at, 0.37, 4u) * 1.6 + plain_grain(at * 3.7, 5.1, 5u) * 0.8;
     let place = clamp(bed * 2.2 + 3.0, 0.0, 4.999);
     let index = u32(place);
@@ -192,10 +205,13 @@ fn desert(site: Site, shape: vec4<f32>, noise: vec4<f32>) -> Coat {
     return Coat(blend(color, SCRUB, min(green, 0.9)), 0.07 + 0.26 * bare);
 }
 
-// The color of a block's side at a depth below the ground, in metres. `along` is a position along the side.
-fn section(along: f32, height: f32, depth: f32, thickness: f32) -> vec3<f32> {
-    let wave = plain_grain(along * value(CELL) / thickness * 0.25, 0.7, 7u);
-    let at = height / thickness + 0.35 * wave;
+// The color of a block's side at a depth below the ground, in metres. `along` is a position along the side, `place` one
+// on the land.
+fn section(along: f32, place: vec2<f32>, height: f32, depth: f32, thickness: f32) -> vec3<f32> {
+    // Level layers are bent a little.
+    let bent = plain_grain(along * value(CELL) / thickness * 0.25, 0.7, 7u);
+    let wave = select(bent, 0.0, data[HAS_BEDDING] != 0u);
+    let at = above_bedding(place, height) / thickness + 0.35 * wave;
     let bed = plain_grain(at * 3.0, 0.41, 4u) + 0.5 * plain_grain(at * 9.0, 3.3, 5u);
     let rock = blend(triple(SECTION_ROCK), triple(SECTION_ROCK + 3u), 0.5 + 0.55 * bed);
     if (data[HAS_SOIL] == 0u) {

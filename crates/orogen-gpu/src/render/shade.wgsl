@@ -29,7 +29,7 @@ fn side_light(met: Met) -> vec3<f32> {
         let absolute = place.xy + vec2<f32>(origin);
         let along = select(absolute.y, absolute.x, met.normal.x == 0.0);
         let below = metres(ground_at(place.xy) - place.z);
-        albedo = section(along, height_of(place.z), below, max(metres(depth), 1.0));
+        albedo = section(along, place.xy, height_of(place.z), below, max(metres(depth), 1.0));
     }
     let facing = max(dot(met.normal, pair(SUN)), 0.0);
     var foot = 1.0;

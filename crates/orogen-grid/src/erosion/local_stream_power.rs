@@ -5,6 +5,7 @@ use super::power::power;
 use super::rows::{least, most, positive};
 use crate::error::Result;
 use crate::progress::Progress;
+use crate::strata::Strata;
 use orogen_simd::{Body, Simd, dispatch};
 
 /// The stream power law with uplift and deposition, for all cells at once. After H. Schott, A. Paris, L. Fournier, E.
@@ -91,6 +92,9 @@ pub const HEIGHT: usize = 0;
 pub const AREA: usize = 1;
 /// Index of the plane of the sediment that leaves a cell, in m^3 per year.
 pub const SEDIMENT: usize = 2;
+/// Index of the plane of the bottom of strata, in metres.
+#[doc(hidden)]
+pub const BOTTOM: usize = 3;
 
 impl LocalStreamPower {
     /// The planes after `iterations`, smaller by [`RADIUS`] cells per iteration on each side.
@@ -99,6 +103,23 @@ impl LocalStreamPower {
     /// If the work is cancelled.
     pub fn run(&self, planes: Planes<3>, iterations: usize, progress: &Progress) -> Result<Planes<3>> {
         planes::run(planes, iterations, &self.constants(), progress)
+    }
+
+    /// [`LocalStreamPower::run`] in strata. A fourth plane has the height of the bottom of their sequence before the
+    /// first iteration, in metres; it rises with the ground. The implicit step of E becomes that of
+    /// [`Strata`]. There are no strata where it is NaN.
+    ///
+    /// # Errors
+    /// If the work is cancelled.
+    #[doc(hidden)]
+    pub fn run_in_strata(
+        &self,
+        strata: &Strata,
+        planes: Planes<4>,
+        iterations: usize,
+        progress: &Progress,
+    ) -> Result<Planes<4>> {
+        planes::run(planes, iterations, &Layered { constants: self.constants(), strata }, progress)
     }
 
     /// The constants of an iteration, in the order of `Constants`.
@@ -177,24 +198,76 @@ impl Body for Rows<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, _: S) {
-        let wide = self.from.width() - 2;
-        let mut rows = self.scratch.chunks_exact_mut(2 * wide);
-        let ring: [&mut [f32]; 3] = std::array::from_fn(|_| rows.next().unwrap_or_default());
-        for j in 0..self.from.height() - 2 {
-            let three = [j, j + 1, j + 2].map(|row| self.from.row(row));
-            // The amount that a cell of row j + 1 gives to a neighbor per unit of slope^4.
-            let (areas, loads) = ring[j % 3].split_at_mut(wide);
-            self.constants.give(three.map(|row| row[HEIGHT]), [three[1][AREA], three[1][SEDIMENT]], [areas, loads]);
-            if j >= 2 {
-                let given = [j - 2, j - 1, j].map(|row| &*ring[row % 3]);
-                let heights = [j - 1, j, j + 1].map(|row| self.from.row(row)[HEIGHT]);
-                self.constants.take(heights, given, self.to.row_mut(j - 2));
-            }
-        }
+        let constants = self.constants;
+        constants.rows(self.from, self.scratch, |j, heights, given| {
+            constants.take(heights, given, self.to.row_mut(j), |_, _, rate, steep| constants.cut(rate, steep));
+        });
+    }
+}
+
+/// An iteration in strata.
+struct Layered<'a> {
+    constants: Constants,
+    strata: &'a Strata,
+}
+
+impl Pass<4> for Layered<'_> {
+    const RADIUS: usize = RADIUS;
+
+    fn make(&self, from: &Planes<4>, to: &mut Planes<4>, scratch: &mut Vec<f32>) {
+        scratch.resize(6 * (from.width() - 2), 0.0);
+        let Layered { constants, strata } = self;
+        constants.rows(from, scratch, |j, heights, given| {
+            let [height, area, load, bottoms] = to.row_mut(j);
+            let before = &from.row(j + RADIUS)[BOTTOM][RADIUS..];
+            bottoms.iter_mut().zip(before).for_each(|(bottom, before)| *bottom = before + constants.risen);
+            constants.take(heights, given, [height, area, load], |i, h, rate, steep| {
+                let bottom = before[i];
+                if !bottom.is_finite() {
+                    return constants.cut(rate, steep);
+                }
+                // The drop to a neighbor with this slope.
+                let drop = f64::from(steep / constants.per_side);
+                let top = f64::from(h) - f64::from(bottom);
+                let law = [f64::from(rate * constants.per_side), 1.0];
+                (drop - strata.eroded(top, top - drop, law, |drop, cut| drop / (1.0 + cut))) as f32
+            });
+        });
     }
 }
 
 impl Constants {
+    /// Calls `take` for each row of the result with the heights of three rows, and with what their cells give.
+    /// `scratch` has room for three rows of two values.
+    #[inline(always)]
+    fn rows<const N: usize>(
+        &self,
+        from: &Planes<N>,
+        scratch: &mut [f32],
+        mut take: impl FnMut(usize, [&[f32]; 3], [&[f32]; 3]),
+    ) {
+        let wide = from.width() - 2;
+        let mut rows = scratch.chunks_exact_mut(2 * wide);
+        let ring: [&mut [f32]; 3] = std::array::from_fn(|_| rows.next().unwrap_or_default());
+        for j in 0..from.height() - 2 {
+            let three = [j, j + 1, j + 2].map(|row| from.row(row));
+            // The amount that a cell of row j + 1 gives to a neighbor per unit of slope^4.
+            let (areas, loads) = ring[j % 3].split_at_mut(wide);
+            self.give(three.map(|row| row[HEIGHT]), [three[1][AREA], three[1][SEDIMENT]], [areas, loads]);
+            if j >= 2 {
+                let given = [j - 2, j - 1, j].map(|row| &*ring[row % 3]);
+                let heights = [j - 1, j, j + 1].map(|row| from.row(row)[HEIGHT]);
+                take(j - 2, heights, given);
+            }
+        }
+    }
+
+    /// The erosion on a slope, by the implicit step.
+    #[inline(always)]
+    fn cut(&self, rate: f32, steep: f32) -> f32 {
+        rate * steep / (1.0 + rate * self.per_side)
+    }
+
     /// The weight of a slope: its fourth power, or 0 uphill.
     #[inline(always)]
     fn weight(&self, drop: f32, per: f32) -> f32 {
@@ -225,9 +298,16 @@ impl Constants {
         }
     }
 
-    /// Adds the inflow to the cells of a row, then erodes and deposits.
+    /// Adds the inflow to the cells of a row, then erodes and deposits. `cut_of` is the erosion at a column by its
+    /// height, the rate and the slope.
     #[inline(always)]
-    fn take(&self, heights: [&[f32]; 3], given: [&[f32]; 3], [height, area, load]: [&mut [f32]; 3]) {
+    fn take(
+        &self,
+        heights: [&[f32]; 3],
+        given: [&[f32]; 3],
+        [height, area, load]: [&mut [f32]; 3],
+        cut_of: impl Fn(usize, f32, f32, f32) -> f32,
+    ) {
         let n = height.len();
         let (area, load) = (&mut area[..n], &mut load[..n]);
         let [[nw, nc, ne], [w, c, e], [sw, sc, se]] = heights.map(|row| neighbors(&row[1..], n));
@@ -255,7 +335,7 @@ impl Constants {
             if self.slope_exponent != 0.0 {
                 rate *= power(most(steep, 1e-12), self.slope_exponent);
             }
-            let cut = least(rate * steep / (1.0 + rate * side), positive(h - lowest));
+            let cut = least(cut_of(i, h, rate, steep), positive(h - lowest));
             // At most the inflow is deposited, and nothing on cells above their surroundings.
             let all = came * self.years / self.cell_area;
             let mean = 0.25 * ((nc[i] + sc[i]) + (w[i] + e[i]));
@@ -284,6 +364,7 @@ fn neighbors(row: &[f32], n: usize) -> [&[f32]; 3] {
 mod tests {
     use super::*;
     use crate::grid::{Grid, Window};
+    use crate::strata::Stratum;
 
     fn law() -> LocalStreamPower {
         LocalStreamPower {
@@ -367,5 +448,40 @@ mod tests {
             let expect = if i < 10 { -5.0 } else { 13.0 };
             assert!((h - expect).abs() < 1e-4, "{i}: {h}");
         }
+    }
+
+    #[test]
+    fn hard_strata_stand_and_even_strata_change_nothing() {
+        let iterations = 20;
+        let window = Window::new(60, 40, 20.0);
+        let hills = |x: f64, y: f64| 300.0 + 80.0 * libm::sin(x / 170.0) * libm::cos(y / 130.0) + 0.1 * x;
+        let from = planes(window.grown(iterations * RADIUS), hills);
+        let run_in = |strata: &[Stratum], bottom: f32| {
+            let strata = Strata::new(strata, false, 1.0).unwrap();
+            let mut layered = Planes::<4>::new(from.width(), from.height());
+            for j in 0..from.height() {
+                for (to, row) in layered.row_mut(j).into_iter().zip(from.row(j)) {
+                    to.copy_from_slice(row);
+                }
+                layered.row_mut(j)[BOTTOM].fill(bottom);
+            }
+            law().run_in_strata(&strata, layered, iterations, &Progress::none()).unwrap().grid(HEIGHT, window)
+        };
+        let stratum =
+            |thickness: f64, erodibility_factor: f64| Stratum { thickness, erodibility_factor, ..Stratum::default() };
+        let [plain, ..] = run(&law(), from.clone(), iterations, window);
+        let before = from.grid(HEIGHT, window.grown(iterations * RADIUS)).crop(&window).unwrap();
+        let off =
+            |a: &Grid, b: &Grid| a.data().iter().zip(b.data()).map(|(a, b)| f64::from((a - b).abs())).sum::<f64>();
+        let even = run_in(&[stratum(10.0, 1.0), stratum(7.0, 1.0)], 250.0);
+        assert!(off(&plain, &even) < 1e-3 * off(&plain, &before), "{} {}", off(&plain, &even), off(&plain, &before));
+        assert_eq!(run_in(&[stratum(10.0, 0.001)], f32::NAN), plain, "no strata without a datum");
+        // Ground above a hard stratum is eroded down to it, and it stays.
+        let hard = run_in(&[stratum(500.0, 40.0), stratum(400.0, 0.001)], -100.0);
+        let cut = |above: f32, grid: &Grid| {
+            let cells = before.data().iter().zip(grid.data()).filter(|(before, _)| (**before > 300.0) == (above > 0.0));
+            cells.map(|(before, after)| f64::from((before - after).max(0.0))).sum::<f64>()
+        };
+        assert!(cut(1.0, &hard) > 2.0 * cut(1.0, &plain) && cut(-1.0, &hard) < 0.3 * cut(-1.0, &plain));
     }
 }

@@ -10,6 +10,7 @@ use super::stream_power::{StreamPower, Substrate};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::progress::Progress;
+use crate::strata::Bedding;
 
 /// Parameters of an erosion run with the stream power law.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -138,7 +139,8 @@ impl<'a> ErosionRun<'a> {
             (None, Some(seed)) => Descent::Scattered(seed.wrapping_add(self.done)),
             (None, None) => Descent::Steepest,
         };
-        let between = Substrate { points: self.points.as_ref(), ..*self.ground };
+        let bedding = self.bedding(self.done + 1);
+        let between = Substrate { points: self.points.as_ref(), bedding, ..*self.ground };
         let amount = years * creep;
         let stages = creep_stages(heights.window(), amount);
         let [cutting, creeping] = progress.parts([45.0, 2.0 * stages]);
@@ -157,12 +159,20 @@ impl<'a> ErosionRun<'a> {
         progress.check()?;
         let mut last = self.erosion;
         if let Some(points) = &self.points {
-            points.onto_lattice(heights, &self.outlets);
+            points.onto_lattice(heights, &self.outlets, self.ground.bedding.is_some());
             // The limit on slopes was already applied between the points; applying it on the lattice would create
             // facets.
             last.law.max_slope = f64::INFINITY;
         }
-        last.cut(heights, &self.outlets, self.ground, Descent::Steepest, 0.0, progress)
+        let ground = Substrate { bedding: self.bedding(self.done), ..*self.ground };
+        last.cut(heights, &self.outlets, &ground, Descent::Steepest, 0.0, progress)
+    }
+
+    /// The strata after a number of steps.
+    fn bedding(&self, done: u32) -> Option<Bedding<'a>> {
+        let Erosion { law, years, steps, .. } = self.erosion;
+        let left = f64::from(steps.saturating_sub(done)) / f64::from(steps.max(1));
+        self.ground.bedding.map(|bedding| bedding.before(left * years * law.uplift))
     }
 
     /// Like [`ErosionRun::settle`]; also returns the flow accumulation of the final heights.
@@ -185,7 +195,9 @@ impl<'a> ErosionRun<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::grid::Window;
     use crate::hydrology::samples;
+    use crate::strata::{Strata, Stratum};
 
     fn erosion() -> Erosion {
         Erosion { law: StreamPower::default(), creep: 1e-6, years: 1e5, steps: 4, scattered: Some(1), jitter: 0.0 }
@@ -278,6 +290,127 @@ mod tests {
         // the directions has a ninth of the slopes.
         let (regular, jitter) = (aligned(0.0), aligned(1.0));
         assert!(regular > 0.9 && (0.08..0.14).contains(&jitter), "{regular} {jitter}");
+    }
+
+    /// A tableland of cells of 20 m, with two metres of roughness, above a border at 0, eroded without uplift. The top
+    /// of the strata rises by `dip` to the east from 190 m in the middle.
+    fn tableland(strata: &[Stratum], dip: f64) -> (Grid, Grid) {
+        let window = Window::new(90, 60, 20.0);
+        let rough = samples::hills(90, 60, 5);
+        let highest = rough.data().iter().copied().fold(f32::MIN, f32::max);
+        let (mut heights, mut top) = (Grid::filled(window, 0.0), Grid::filled(window, 0.0));
+        for j in 0..60 {
+            for i in 0..90 {
+                top.row_mut(j)[i] = (190.0 + dip * (i as f64 - 45.0) * 20.0) as f32;
+                if (1..89).contains(&i) && (1..59).contains(&j) {
+                    heights.row_mut(j)[i] = 200.0 + 2.0 * rough[(i, j)] / highest;
+                }
+            }
+        }
+        let strata = Strata::new(strata, false, libm::tan(35f64.to_radians())).unwrap();
+        let law = StreamPower { uplift: 0.0, max_slope: libm::tan(35f64.to_radians()), ..StreamPower::default() };
+        let run = Erosion { law, years: 2e5, steps: 40, creep: 0.0, scattered: Some(1), jitter: 1.0 };
+        let substrate = Substrate::default().with_bedding(Some(Bedding::new(&strata, Some(&top))));
+        run.run(&mut heights, &substrate, None, &Progress::none()).unwrap();
+        (heights, top)
+    }
+
+    const SOFT: Stratum = Stratum { thickness: 60.0, erodibility_factor: 3.0, talus_angle: 30.0 };
+    const FIRM: Stratum = Stratum { thickness: 500.0, erodibility_factor: 0.5, talus_angle: 30.0 };
+
+    #[test]
+    fn a_hard_stratum_makes_benches_above_cliffs_as_high_as_it_is_thick() {
+        for thickness in [20.0f32, 40.0] {
+            let hard = Stratum { thickness: f64::from(thickness), erodibility_factor: 0.005, talus_angle: 85.0 };
+            let (heights, _) = tableland(&[SOFT, hard, FIRM], 0.0);
+            let (bench, foot) = (130.0, 130.0 - thickness);
+            let inner = || (2..58).flat_map(|j| (2..88).map(move |i| (i, j)));
+            let share = |low: f32, high: f32| {
+                inner().filter(|at| (low..high).contains(&heights[*at])).count() as f32 / (56.0 * 86.0)
+            };
+            // Soft rock is gone from the bench, and the cliff takes hardly any ground.
+            assert!(share(bench - 2.0, bench + 3.0) > 0.12, "{}", share(bench - 2.0, bench + 3.0));
+            assert!(share(foot + 2.0, bench - 4.0) < 0.08, "{}", share(foot + 2.0, bench - 4.0));
+            // The drop from the bench to the cells below its edge.
+            let mut drops: Vec<f32> = inner()
+                .filter_map(|(i, j)| {
+                    let around = [(i - 1, j), (i + 1, j), (i, j - 1), (i, j + 1)].map(|at| heights[at]);
+                    let lowest = around.into_iter().fold(f32::MAX, f32::min);
+                    let is_edge = (bench - 4.0..bench + 4.0).contains(&heights[(i, j)]) && lowest < foot + 2.0;
+                    is_edge.then_some(heights[(i, j)] - lowest)
+                })
+                .collect();
+            drops.sort_by(f32::total_cmp);
+            // The relief of a cell of the soft slope below.
+            let relief = 20.0 * libm::tanf(30f32.to_radians());
+            let median = drops[drops.len() / 2];
+            assert!(
+                drops.len() > 40 && (median - thickness).abs() < relief,
+                "{thickness}: {median} of {}",
+                drops.len()
+            );
+        }
+    }
+
+    #[test]
+    fn the_slope_of_bare_hard_rock_is_its_dip() {
+        for dip in [0.05, 0.1] {
+            let hard = Stratum { thickness: 30.0, erodibility_factor: 0.005, talus_angle: 80.0 };
+            let (heights, top) = tableland(&[SOFT, hard, FIRM], dip);
+            // Ground on the upper side of the hard stratum.
+            let is_on = |i: usize, j: usize| (heights[(i, j)] - (top[(i, j)] - 60.0)).abs() < 6.0;
+            let mut slopes = Vec::new();
+            for j in 3..57 {
+                for i in 3..87 {
+                    if (i - 1..=i + 1).all(|i| (j - 1..=j + 1).all(|j| is_on(i, j))) {
+                        let east = f64::from(heights[(i + 1, j)] - heights[(i - 1, j)]) / 40.0;
+                        let south = f64::from(heights[(i, j + 1)] - heights[(i, j - 1)]) / 40.0;
+                        slopes.push([east, south]);
+                    }
+                }
+            }
+            let mean = |k: usize| slopes.iter().map(|slope| slope[k]).sum::<f64>() / slopes.len() as f64;
+            let degrees = |slope: f64| libm::atan(slope).to_degrees();
+            assert!(slopes.len() > 100, "{}", slopes.len());
+            let (east, south) = (degrees(mean(0)), degrees(mean(1)));
+            assert!((east - degrees(dip)).abs() < 2.0 && south.abs() < 2.0, "{east} {south}, not {}", degrees(dip));
+        }
+    }
+
+    #[test]
+    fn strata_of_one_factor_are_the_factor() {
+        let heights = samples::hills(60, 50, 3);
+        let run = |bedding: Option<Bedding>, erodibility: f64| {
+            let mut out = heights.clone();
+            let law = StreamPower { erodibility, max_slope: 0.8, ..StreamPower::default() };
+            let erosion = Erosion { law, creep: 0.0, ..erosion() };
+            let substrate = Substrate::default().with_bedding(bedding);
+            erosion.run(&mut out, &substrate, None, &Progress::none()).unwrap();
+            out
+        };
+        let stratum = |thickness: f64| Stratum { thickness, erodibility_factor: 0.5, talus_angle: 0.0 };
+        let strata = Strata::new(&[stratum(11.0), stratum(3.0)], true, 0.8).unwrap();
+        let (layered, plain) = (run(Some(Bedding::new(&strata, None)), 2e-5), run(None, 1e-5));
+        let furthest = layered.data().iter().zip(plain.data()).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(furthest < 0.01, "{furthest}");
+        // A datum without values is no stratum.
+        let nowhere = Grid::filled(*heights.window(), f32::NAN);
+        assert_eq!(run(Some(Bedding::new(&strata, Some(&nowhere))), 2e-5), run(None, 2e-5));
+    }
+
+    #[test]
+    fn rock_rises_with_the_ground() {
+        // The same rock is reached whether it rises during the run or has risen before.
+        let heights = samples::hills(60, 50, 3);
+        let strata = [SOFT, Stratum { thickness: 30.0, erodibility_factor: 0.01, talus_angle: 80.0 }, SOFT];
+        let strata = Strata::new(&strata, true, 1.0).unwrap();
+        let law = StreamPower { uplift: 1e-3, erodibility: 0.0, max_slope: f64::INFINITY, ..StreamPower::default() };
+        let erosion = Erosion { law, creep: 0.0, years: 1e5, steps: 4, ..erosion() };
+        let substrate = Substrate::default().with_bedding(Some(Bedding::new(&strata, None)));
+        let run = ErosionRun::new(erosion, &heights, &substrate, None);
+        let risen = [0, 1, 4].map(|done| run.bedding(done).and_then(|bedding| bedding.bottom(0, 2.0)));
+        let below = -strata.thickness();
+        assert_eq!(risen, [Some(below - 200.0), Some(below - 150.0), Some(below)]);
     }
 
     #[test]

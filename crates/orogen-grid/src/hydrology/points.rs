@@ -90,8 +90,10 @@ impl Points {
         }
     }
 
-    /// Interpolates the heights at the points to the lattice, along the local slope. Outlets keep their heights.
-    pub fn onto_lattice(&self, heights: &mut Grid, outlets: &Outlets) {
+    /// Interpolates the heights at the points to the lattice, along the local slope. Outlets keep their heights. With
+    /// `has_cliffs` heights stay between those of the eight neighbors and the point: beside a cliff there is no slope
+    /// to go along.
+    pub fn onto_lattice(&self, heights: &mut Grid, outlets: &Outlets, has_cliffs: bool) {
         let (width, height) = (self.window.width, self.window.height);
         if self.reach == 0.0 || width < 3 || height < 3 {
             return;
@@ -111,7 +113,7 @@ impl Points {
                 }
                 self.offsets(j + 1, &mut offsets[2]);
                 let around = [j - 1, j, j + 1].map(|j| &h[j * width..(j + 1) * width]);
-                carry_over(around, [&offsets[0], &offsets[1], &offsets[2]], row);
+                carry_over(around, [&offsets[0], &offsets[1], &offsets[2]], has_cliffs, row);
                 for (i, height) in row.iter_mut().enumerate() {
                     if i == 0 || i + 1 == width || outlets.at(j * width + i) {
                         *height = around[1][i];
@@ -143,7 +145,7 @@ struct Offsets {
 }
 
 /// The heights at the lattice points of the middle one of three rows, except at its ends.
-fn carry_over(h: [&[f32]; 3], offsets: [&Offsets; 3], row: &mut [f32]) {
+fn carry_over(h: [&[f32]; 3], offsets: [&Offsets; 3], has_cliffs: bool, row: &mut [f32]) {
     let width = row.len();
     let (here_x, here_y) = (&offsets[1].east[1..width - 1], &offsets[1].south[1..width - 1]);
     let here = &h[1][1..width - 1];
@@ -169,6 +171,15 @@ fn carry_over(h: [&[f32]; 3], offsets: [&Offsets; 3], row: &mut [f32]) {
         let scale = 1.0 / (xx * yy - xy * xy);
         let slope = [(xh * yy - yh * xy) * scale, (yh * xx - xh * xy) * scale];
         *height = here[i] - slope[0] * here_x[i] - slope[1] * here_y[i];
+        if has_cliffs {
+            let (mut low, mut high) = (here[i], here[i]);
+            for (_, _, heights, _, _) in &around {
+                low = if heights[i] < low { heights[i] } else { low };
+                high = if heights[i] > high { heights[i] } else { high };
+            }
+            *height = if *height < low { low } else { *height };
+            *height = if *height > high { high } else { *height };
+        }
     }
 }
 
@@ -229,7 +240,7 @@ mod tests {
                 heights.row_mut(j as usize)[i as usize] = plane(i as f32 + x, j as f32 + y);
             }
         }
-        points.onto_lattice(&mut heights, &outlets);
+        points.onto_lattice(&mut heights, &outlets, false);
         for j in 2..38 {
             for i in 2..48 {
                 let (got, expect) = (heights[(i, j)], plane(i as f32, j as f32));
@@ -238,7 +249,7 @@ mod tests {
         }
         let before = samples::hills(20, 20, 3);
         let mut same = before.clone();
-        Points::new(*before.window(), 0.0, 9).onto_lattice(&mut same, &Outlets::new(&before, None));
+        Points::new(*before.window(), 0.0, 9).onto_lattice(&mut same, &Outlets::new(&before, None), true);
         assert_eq!(same, before);
     }
 }

@@ -24,6 +24,7 @@ use super::receivers::Receivers;
 use crate::checks::{checks, never, now_and_then, steps};
 use crate::grid::Grid;
 use crate::progress::Progress;
+use crate::strata::Bedding;
 use crate::{error, parallel};
 use std::ops::Range;
 
@@ -82,6 +83,9 @@ pub struct Substrate<'a> {
     pub rain: Option<&'a Grid>,
     /// Positions of the cells, which determine the distances to receivers; `None` means the lattice.
     pub points: Option<&'a Points>,
+    /// Layers of rock; `None` means the same rock at all heights.
+    #[doc(hidden)]
+    pub bedding: Option<Bedding<'a>>,
 }
 
 impl<'a> Substrate<'a> {
@@ -107,6 +111,13 @@ impl<'a> Substrate<'a> {
     #[must_use]
     pub const fn with_points(self, points: Option<&'a Points>) -> Substrate<'a> {
         Substrate { points, ..self }
+    }
+
+    /// Sets the layers of rock.
+    #[doc(hidden)]
+    #[must_use]
+    pub const fn with_bedding(self, bedding: Option<Bedding<'a>>) -> Substrate<'a> {
+        Substrate { bedding, ..self }
     }
 }
 
@@ -210,6 +221,10 @@ struct Step<'a> {
     points: Option<(&'a Points, [isize; 8])>,
     /// Uplift of the step, in metres.
     risen: f64,
+    bedding: Option<Bedding<'a>>,
+    /// Whether slopes have a maximum.
+    is_limited: bool,
+    cell: f64,
 }
 
 impl<'a> Step<'a> {
@@ -241,6 +256,9 @@ impl<'a> Step<'a> {
             factors,
             points: ground.points.map(|points| (points, strides(receivers.window().width))),
             risen: years * law.uplift,
+            bedding: ground.bedding,
+            is_limited: law.max_slope.is_finite(),
+            cell,
         }
     }
 
@@ -268,16 +286,33 @@ impl<'a> Step<'a> {
             None => self.powers.of(self.area[c]),
         };
         let cut = factor * erodibility_factor * power;
-        let left = if self.slope_exponent == 1.0 {
-            above / (1.0 + cut)
-        } else {
-            solve_newton(above, cut, self.slope_exponent)
+        let bottom = self.bedding.and_then(|bedding| Some((bedding.strata, bedding.bottom(c, uplift_factor)?)));
+        let left = match bottom {
+            None => self.left(above, cut),
+            Some((strata, bottom)) => {
+                let foot = below - bottom;
+                if self.is_limited {
+                    let away = match &self.points {
+                        Some((points, strides)) => 1.0 / f64::from(points.inverse_distance(c, code, strides)),
+                        None => DISTANCES[usize::from(code)],
+                    };
+                    most = strata.stable(foot, away * self.cell);
+                }
+                let law = [cut, self.slope_exponent];
+                strata.eroded(foot + above, foot, law, |above, cut| self.left(above, cut))
+            }
         };
         // A landslide limit below the minimum slope is raised to it. NaN counts as the limit, as with `min`.
         let left = if left < most { left } else { most };
         let new = (below + if left > least { left } else { least }) as f32;
         // In f32 the minimum slope may be rounded away, but the cell must drain.
         if new > receiver { new } else { receiver.next_up() }
+    }
+
+    /// The drop that remains of a drop after the step.
+    #[inline(always)]
+    fn left(&self, above: f64, cut: f64) -> f64 {
+        if self.slope_exponent == 1.0 { above / (1.0 + cut) } else { solve_newton(above, cut, self.slope_exponent) }
     }
 }
 

@@ -143,12 +143,12 @@ impl Default for RenderJob {
     }
 }
 
-/// Memory per sample of the land beside its layers, in bytes: the pyramid, slopes, and light twice while it is
+/// Memory per sample of the land beside its layers, in bytes: the pyramid, slopes, bedding, and light twice while it is
 /// computed.
-const LAND: u64 = 116;
+const LAND: u64 = 120;
 
 /// Layers that a picture uses if the recipe has them.
-const LAYERS: [&str; 3] = [HEIGHT, "surface", "flow"];
+const LAYERS: [&str; 4] = [HEIGHT, "surface", "flow", "bedding"];
 
 /// The layers that show surfaces.
 const COVER: [&Derived; 2] = [&albedo::LAYER, &roughness::LAYER];
@@ -300,6 +300,7 @@ impl RenderJob {
         style.colors = self.colors;
         style.palette = self.palette.as_ref();
         style.range = self.range;
+        style.bedding = layer("bedding");
         style.snow_line = self.snow_line;
         style.samples = self.samples;
         if let [red, green, blue, roughness] = cover.as_slice() {

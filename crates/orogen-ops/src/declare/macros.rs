@@ -96,7 +96,8 @@ macro_rules! choice {
 /// use: a former key or a common term. With `octaves |op| KIND;` after its name the op is a fractal: a noise with its
 /// own parameters and those that all fractals share. With `margin;` after its name the op is a solver with the
 /// parameter `margin`: its domain extends beyond the world by that length on each side. The implementation needs no
-/// code for it, because [`Sources::domain`](crate::op::Sources::domain) is the extended domain.
+/// code for it, because [`Sources::domain`](crate::op::Sources::domain) is the extended domain. With `strata;` after
+/// that the op gets the input `bedding`, the parameters `strata` and `repeat_strata`, and a method `prepared_strata`.
 ///
 /// ```
 /// use orogen_ops::op::{Context, Filter, GridInputs, only_layer};
@@ -218,6 +219,59 @@ macro_rules! op {
 
             fn cost_in_rows(&self) -> f64 {
                 $name::COST(self)[1]
+            }
+        }
+    };
+    (
+        $(#[doc = $doc:literal])+
+        $visibility:vis struct $name:ident = $op:literal, solver, revision $revision:literal;
+        margin;
+        strata;
+        $($rest:tt)*
+    ) => {
+        $crate::op! { @strata [margin;] $(#[doc = $doc])+ $visibility struct $name = $op, solver, revision $revision; $($rest)* }
+    };
+    (
+        $(#[doc = $doc:literal])+
+        $visibility:vis struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
+        strata;
+        $($rest:tt)*
+    ) => {
+        $crate::op! { @strata [] $(#[doc = $doc])+ $visibility struct $name = $op, $locality, revision $revision; $($rest)* }
+    };
+    (
+        @strata [$($margin:tt)*]
+        $(#[doc = $doc:literal])+
+        $visibility:vis struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
+        inputs { $($inputs:tt)* }
+        $(params { $($params:tt)* })?
+        $(layers { $($layers:tt)* })?
+    ) => {
+        $crate::op! {
+            $(#[doc = $doc])+
+            $visibility struct $name = $op, $locality, revision $revision;
+            $($margin)*
+            inputs {
+                $($inputs)*
+                /// Height of the top of the first stratum in metres, at the end of the simulated time: a plane for
+                /// rock that dips, noise for folds, a step for a fault. It has no effect without `strata`. Default: 0.
+                bedding: optional,
+            }
+            params {
+                $($($params)*)?
+                /// Layers of rock from the top down. Above the first one and below the last one these two go on.
+                strata: Vec<$crate::declare::Stratum> = Vec::new();
+                /// Whether the strata repeat above and below instead.
+                repeat_strata: bool = false;
+            }
+            $(layers { $($layers)* })?
+        }
+
+        impl $name {
+            /// The strata for a run; `None` if there are none. Strata without a talus angle get `max_slope`, rise over
+            /// run.
+            fn prepared_strata(&self, max_slope: f64) -> Option<$crate::declare::strata::Strata> {
+                $crate::declare::strata::Strata::new(&self.strata, self.repeat_strata, max_slope)
             }
         }
     };

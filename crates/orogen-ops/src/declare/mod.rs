@@ -7,7 +7,7 @@
 //! - [`input`]: inputs of nodes
 //! - [`param`]: the types that parameters can have
 //! - [`points`]: lists of points as parameters, and their segments; [`memo`]: values computed from parameters once
-//! - [`strokes`]: strokes of a brush as a parameter
+//! - [`strokes`]: strokes of a brush as a parameter; [`strata`]: strata of rock; `tables` reads such lists of tables
 //! - [`declared`]: the trait that every op implements by its declaration
 //! - `macros`: [`op!`](crate::op!) and [`choice!`](crate::choice), which generate all of this
 
@@ -29,7 +29,10 @@ pub mod points;
 #[doc(hidden)]
 pub mod spec;
 #[doc(hidden)]
+pub mod strata;
+#[doc(hidden)]
 pub mod strokes;
+mod tables;
 
 /// Noise of the octaves of fractals. A module, because the pages of a crate that is passed on are not hidden.
 #[doc(hidden)]
@@ -41,6 +44,7 @@ pub use declared::Declared;
 pub use input::{Input, InputName};
 #[doc(hidden)]
 pub use input::{named, set_named};
+pub use orogen_grid::strata::Stratum;
 pub use orogen_io::dem::file_ref::{AreaFile, FileRef, LineFile};
 #[doc(hidden)]
 pub use param::AnyParam;

@@ -6,9 +6,9 @@ use super::memo::Memo;
 use super::param::{Param, read_param};
 use super::point_lists::{Drawn, MAX_POINTS, Reader};
 use super::spec::{ParamSpec, Shape, TableSpec};
-use crate::value::{Span, Spanned, Value};
+use super::tables::{self, Problem, shortest};
+use crate::value::{Spanned, Value};
 use orogen_grid::polylines::buffers::Buffers;
-use orogen_grid::words::{list, suggestion};
 
 /// Maximum number of strokes of a parameter.
 pub const MAX_STROKES: usize = 10_000;
@@ -161,12 +161,6 @@ impl Stroke {
     }
 }
 
-/// A number in its shortest form for recipes: 200 instead of 200.0.
-fn shortest(number: f64) -> Value {
-    let is_whole = number.abs() < 1e15 && number == (number as i64) as f64;
-    if is_whole { Value::Integer(number as i64) } else { Value::Number(number) }
-}
-
 /// Strokes in the order in which they were painted. Recipes write a list of tables: `[{ points = [[x, y], ...], radius
 /// = 200 }, ...]`.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -202,42 +196,20 @@ impl Strokes {
     }
 }
 
+/// The form of a stroke, and what to do about too many, for messages.
+const FORM: [&str; 2] = ["{ points = [[x, y], ...], radius = 100 }", "paint the others in a node of their own"];
+
 /// Reads strokes; an error has the position of the part that is wrong.
-fn read(name: &str, value: &Value) -> Result<Vec<Stroke>, (Span, String)> {
-    let Value::List(items) = value else {
-        let form = "{ points = [[x, y], ...], radius = 100 }";
-        return Err((0..0, format!("`{name}` must be a list of strokes [{form}, ...], not {}", value.describe())));
-    };
-    if items.len() > MAX_STROKES {
-        let message =
-            format!("`{name}`: it has more than {MAX_STROKES} strokes; paint the others in a node of their own");
-        return Err((0..0, message));
-    }
+fn read(name: &str, value: &Value) -> Result<Vec<Stroke>, Problem> {
     let mut left = MAX_POINTS;
+    let items = tables::items(&STROKE, FORM, name, value)?;
     items.iter().enumerate().map(|(k, item)| stroke(name, k + 1, item, &mut left)).collect()
 }
 
 /// Reads the stroke of this number. `left` is the number of points that are still allowed.
-fn stroke(name: &str, number: usize, item: &Spanned<Value>, left: &mut usize) -> Result<Stroke, (Span, String)> {
-    let wrong = |span: &Span, what: String| Err((span.clone(), format!("`{name}`: {what}")));
-    let Value::Table(entries) = &item.value else {
-        let found = item.value.describe();
-        return wrong(
-            &item.span,
-            format!("stroke {number} is {found}; write it as {{ points = [[x, y], ...], radius = 100 }}"),
-        );
-    };
+fn stroke(name: &str, number: usize, item: &Spanned<Value>, left: &mut usize) -> Result<Stroke, Problem> {
     let mut stroke = Stroke::default();
-    let mut given = [false; KEYS.len()];
-    for (key, value) in entries {
-        let known = KEYS.iter().zip(&mut given).enumerate().find(|(_, (spec, _))| spec.name == key.value);
-        let Some((k, (spec, is_given))) = known else {
-            let hint = suggestion(&key.value, KEYS.iter().map(|spec| spec.name));
-            return wrong(&key.span, format!("unknown key `{}` in stroke {number}; {hint}", key.value));
-        };
-        if std::mem::replace(is_given, true) {
-            return wrong(&key.span, format!("stroke {number} has `{}` twice", key.value));
-        }
+    tables::table(&STROKE, FORM[0], name, number, item, |k, spec, value| {
         let read = match k {
             0 => {
                 stroke.points = points(name, number, spec, value, left)?;
@@ -249,15 +221,8 @@ fn stroke(name: &str, number: usize, item: &Spanned<Value>, left: &mut usize) ->
             4 => read_param(spec, &value.value).map(|value| stroke.value = value),
             _ => read_param(spec, &value.value).map(|strength| stroke.strength = strength),
         };
-        if let Err(message) = read {
-            return wrong(&value.span, format!("in stroke {number} {message}"));
-        }
-    }
-    let missing = KEYS.iter().zip(given).take(STROKE.required).filter(|(_, is_given)| !is_given);
-    let missing: Vec<&str> = missing.map(|(spec, _)| spec.name).collect();
-    if !missing.is_empty() {
-        return wrong(&item.span, format!("stroke {number} has no {}", list(missing)));
-    }
+        read.map_err(|message| tables::refused(&STROKE, name, number, value, &message))
+    })?;
     Ok(stroke)
 }
 
@@ -267,7 +232,7 @@ fn points(
     spec: &ParamSpec,
     value: &Spanned<Value>,
     left: &mut usize,
-) -> Result<Vec<[f64; 2]>, (Span, String)> {
+) -> Result<Vec<[f64; 2]>, Problem> {
     let reader = Reader { name, number: spec.number(), drawn: Drawn::Stroke, range: spec.range };
     let Value::List(items) = &value.value else {
         let found = value.value.describe();

@@ -23,7 +23,11 @@ op! {
     /// `stream-power` shapes the land, this filter adds gullies at any cell size. The mass of the sediment is conserved
     /// only approximately, because it arrives one iteration late. The halo is two cells per iteration. The result
     /// depends on the cell size. About 4 ns per sample and iteration.
+    ///
+    /// With `strata` the erodibility also depends on the rock at depth, as in `stream-power`; sediment counts as the
+    /// rock at its height, and talus angles have no effect: use `thermal`.
     pub struct LocalStreamPower = "local-stream-power", filter, revision 1;
+    strata;
     inputs {
         /// The initial heights.
         source: required,
@@ -69,8 +73,8 @@ impl Filter for LocalStreamPower {
     }
 
     fn scratch(&self, window: &Window) -> u64 {
-        // Three planes before and after a group of iterations, and their bands.
-        memory(&window.grown(self.halo(window.cell)), 36)
+        // The planes before and after a group of iterations, and their bands.
+        memory(&window.grown(self.halo(window.cell)), if self.strata.is_empty() { 36 } else { 48 })
     }
 
     fn reads_sea_level(&self) -> bool {
@@ -82,29 +86,37 @@ impl Filter for LocalStreamPower {
         if window.is_empty() {
             return Ok(());
         }
-        let own = (window.cell * window.cell) as f32;
-        let mut planes = Planes::new(source.width(), source.height());
+        let law = self.law(window.cell, context.world_params);
+        let (iterations, progress) = (self.iterations as usize, context.progress);
+        // Talus angles are not read.
+        let Some(strata) = self.prepared_strata(1.0) else {
+            let done = law.run(started::<3>(source, flow), iterations, progress)?;
+            write(&done, *window, out);
+            return Ok(());
+        };
+        let mut planes = started::<4>(source, flow);
+        let below = strata.thickness() + f64::from(self.iterations) * law.years * law.uplift;
+        let top = inputs.get("bedding");
         for j in 0..source.height() {
-            let [heights, areas, _] = planes.row_mut(j);
-            heights.copy_from_slice(source.row(j));
-            match flow {
-                Some(flow) => areas.iter_mut().zip(flow.row(j)).for_each(|(area, flow)| *area = flow.max(own)),
-                None => areas.fill(own),
+            let [_, _, _, bottoms] = planes.row_mut(j);
+            match top {
+                Some(top) => {
+                    let heights = bottoms.iter_mut().zip(top.row(j));
+                    heights.for_each(|(bottom, top)| *bottom = (f64::from(*top) - below) as f32);
+                }
+                None => bottoms.fill(-below as f32),
             }
         }
-        let done =
-            self.law(window.cell, context.world_params).run(planes, self.iterations as usize, context.progress)?;
-        for (layer, plane) in out.iter_mut().zip([HEIGHT, AREA, SEDIMENT]) {
-            if let Some(layer) = layer {
-                *layer = done.grid(plane, *window);
-            }
-        }
+        write(&law.run_in_strata(&strata, planes, iterations, progress)?, *window, out);
         Ok(())
     }
 
     fn lower(&self, cell: f64, world_params: &WorldParams) -> Lowering<Passes> {
+        if !self.strata.is_empty() {
+            return Lowering::Processor("strata are integrated in f64");
+        }
         // The two planes of heights, which the iterations use in turn; the first one is the layer.
-        const TURNS: [u32; 2] = [2, 7];
+        const TURNS: [u32; 2] = [3, 8];
         let first = TURNS[(self.iterations % 2) as usize];
         let passes = Passes::new(CODE, &[]).with_numbers(self.law(cell, world_params).numbers()).with_scratch(3);
         let steps = alternating(self.iterations, first, TURNS);
@@ -115,7 +127,34 @@ impl Filter for LocalStreamPower {
     }
 
     fn cost(&self, _: f64) -> f64 {
-        4.0 * f64::from(self.iterations)
+        (if self.strata.is_empty() { 4.0 } else { COST_IN_STRATA }) * f64::from(self.iterations)
+    }
+}
+
+/// Approximate time for a sample and iteration in strata, in nanoseconds.
+const COST_IN_STRATA: f64 = 60.0;
+
+/// The planes before the first iteration: heights, and drainage areas of at least a cell.
+fn started<const N: usize>(source: &Grid, flow: Option<&Grid>) -> Planes<N> {
+    let own = (source.window().cell * source.window().cell) as f32;
+    let mut planes = Planes::new(source.width(), source.height());
+    for j in 0..source.height() {
+        let row = planes.row_mut(j);
+        row[HEIGHT].copy_from_slice(source.row(j));
+        match flow {
+            Some(flow) => row[AREA].iter_mut().zip(flow.row(j)).for_each(|(area, flow)| *area = flow.max(own)),
+            None => row[AREA].fill(own),
+        }
+    }
+    planes
+}
+
+/// Writes the wanted layers.
+fn write<const N: usize>(done: &Planes<N>, window: Window, out: &mut [Option<Grid>]) {
+    for (layer, plane) in out.iter_mut().zip([HEIGHT, AREA, SEDIMENT]) {
+        if let Some(layer) = layer {
+            *layer = done.grid(plane, window);
+        }
     }
 }
 

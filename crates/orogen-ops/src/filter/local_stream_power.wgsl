@@ -5,10 +5,10 @@
 // written.
 const SOURCE = 0u;
 const FLOW = 1u;
-const AREA = 3u;
-const SEDIMENT = 4u;
-const GIVEN_AREA = 5u;
-const GIVEN_SEDIMENT = 6u;
+const AREA = 4u;
+const SEDIMENT = 5u;
+const GIVEN_AREA = 6u;
+const GIVEN_SEDIMENT = 7u;
 
 fn positive(x: f32) -> f32 {
     return max(x, 0.0);

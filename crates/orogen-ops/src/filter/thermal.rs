@@ -16,7 +16,11 @@ op! {
     /// all directions; comparing a cell with its eight neighbors would make octagonal cones. Mass is conserved.
     /// Material moves one cell per pass, so a cliff of n cells needs about n^2 passes to become scree down to its foot.
     /// The halo is one sample per pass; where it grows too large, use `bake`. The result depends on the cell size.
+    ///
+    /// With `strata` each has its own talus angle: material moves where the slope is above that of the stratum of the
+    /// higher sample.
     pub struct Thermal = "thermal", filter, revision 1;
+    strata;
     inputs {
         /// The heights.
         source: required,
@@ -40,7 +44,7 @@ impl Filter for Thermal {
 
     fn scratch(&self, window: &Window) -> u64 {
         // All rows before and after a group of passes, and the bands.
-        memory(&window.grown(self.iterations as usize), 12)
+        memory(&window.grown(self.iterations as usize), if self.strata.is_empty() { 12 } else { 28 })
     }
 
     fn apply(&self, inputs: &GridInputs, window: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
@@ -49,25 +53,42 @@ impl Filter for Thermal {
         if window.is_empty() {
             return Ok(());
         }
-        *out = self.law().run(source, self.iterations as usize, context.progress)?;
+        let (law, passes) = (self.law(), self.iterations as usize);
+        *out = match self.prepared_strata(law.talus) {
+            None => law.run(source, passes, context.progress)?,
+            Some(strata) => {
+                let mut bottoms = match inputs.get("bedding") {
+                    Some(tops) => tops.clone(),
+                    None => Grid::filled(*source.window(), 0.0),
+                };
+                let thickness = strata.thickness();
+                bottoms.data_mut().iter_mut().for_each(|top| *top = (f64::from(*top) - thickness) as f32);
+                law.run_in_strata(&strata, source, &bottoms, passes, context.progress)?
+            }
+        };
         Ok(())
     }
 
     fn lower(&self, cell: f64, _: &WorldParams) -> Lowering<Passes> {
+        if !self.strata.is_empty() {
+            return Lowering::Processor("strata are integrated in f64");
+        }
+        // The layer and another plane, which the passes write in turn.
+        const TURNS: [u32; 2] = [2, 3];
         let [stands, share] = self.law().numbers(cell);
         if self.iterations == 0 {
             // A pass that moves nothing.
             let passes = Passes::new(CODE, &[]).with_numbers([("stands", stands), ("share", 0.0)]).with_scratch(1);
-            return Lowering::Shader(passes.then("slide", 1 << 8, [0; 2]));
+            return Lowering::Shader(passes.then("slide", TURNS[0] << 8, [0; 2]));
         }
         let passes = Passes::new(CODE, &[]).with_numbers([("stands", stands), ("share", share)]).with_scratch(1);
-        let steps = alternating(self.iterations, 0, [1, 2]);
+        let steps = alternating(self.iterations, 0, TURNS);
         let slide = |passes: Passes, (k, step)| passes.then("slide", step, [k + 1; 2]);
         Lowering::Shader(steps.into_iter().enumerate().fold(passes, slide))
     }
 
     fn cost(&self, _: f64) -> f64 {
-        0.7 * f64::from(self.iterations)
+        (if self.strata.is_empty() { 0.7 } else { 15.0 }) * f64::from(self.iterations)
     }
 }
 

@@ -13,6 +13,7 @@ use orogen_grid::hydrology::creep::creep_strides;
 use orogen_grid::hydrology::erosion::{Erosion, ErosionRun};
 use orogen_grid::hydrology::points::Points;
 use orogen_grid::hydrology::stream_power::{StreamPower as Law, Substrate};
+use orogen_grid::strata::Bedding;
 
 op! {
     /// The source eroded by rivers under uplift: the stream power law, dh/dt = U - K A^m S^n, with landslides and soil
@@ -27,8 +28,14 @@ op! {
     /// and uplift over the world; uniform values look less real. The result depends on the cell size. Time grows with
     /// the world and the number of steps; memory is 45 bytes per cell, and 16 more if `jitter` is above 0. With `rain`
     /// it is 16 more, and the time is longer by about a half.
+    ///
+    /// With `strata` the erodibility also depends on the rock at depth, K = `erodibility` * `erodibility_factor` * that
+    /// of the stratum, and rock rises with the ground. A step erodes each stratum that it passes at its own rate, so a
+    /// thin hard one is not skipped, and walls have the talus angle of each of their strata: hard rock makes cliffs and
+    /// benches, soft rock slopes.
     pub struct StreamPower = "stream-power", solver, revision 2;
     margin;
+    strata;
     inputs {
         /// The initial heights.
         source: required,
@@ -91,7 +98,8 @@ impl Solver for StreamPower {
 
     fn scratch(&self, padded: &Window) -> u64 {
         let rain = if self.rain == Input::None { 0 } else { 16 };
-        memory(padded, rain + if self.jitter > 0.0 { 61 } else { 45 })
+        let bedding = if self.strata.is_empty() || self.bedding == Input::None { 0 } else { 4 };
+        memory(padded, rain + bedding + if self.jitter > 0.0 { 61 } else { 45 })
     }
 
     fn reads_sea_level(&self) -> bool {
@@ -105,11 +113,14 @@ impl Solver for StreamPower {
         let (erodibility_factor, uplift_factor) = (given("erodibility_factor")?, given("uplift_factor")?);
         let rain = given("rain")?;
         let erosion = self.erosion(context.world_params);
+        let strata = self.prepared_strata(erosion.law.max_slope);
+        let top = if strata.is_some() { given("bedding")? } else { None };
         let substrate = Substrate::default()
             .with_erodibility_factor(erodibility_factor.as_ref())
             .with_uplift_factor(uplift_factor.as_ref())
             .with_rain(rain.as_ref())
-            .with_points(None);
+            .with_points(None)
+            .with_bedding(strata.as_ref().map(|strata| Bedding::new(strata, top.as_ref())));
         let mut heights = source.clone();
         let sea_level = sea_level(self.sea, context);
         let progress = context.progress;
@@ -126,6 +137,8 @@ impl Solver for StreamPower {
         };
         let wants = |done: u32| context.observer.is_some_and(|observer| observer.wants(done));
         if wants(0) {
+            let risen = erosion.years * erosion.law.uplift;
+            let substrate = substrate.with_bedding(substrate.bedding.map(|bedding| bedding.before(risen)));
             let mut begun = ErosionRun::new(erosion.with_years(0.0).with_steps(1), &heights, &substrate, sea_level);
             let mut now = heights.clone();
             begun.step(&mut now, &progress.part(0.0))?;
@@ -147,7 +160,11 @@ impl Solver for StreamPower {
     fn lower(&self, padded: &Window, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
         let given = |name: &str| self.spec().given_input(name, given);
         let rain = given("rain");
-        let planes = Planes { inputs: 4, layers: self.spec().layers.len(), scratch: SCRATCH, rain };
+        if !self.strata.is_empty() {
+            return Lowering::Processor("strata are integrated in f64");
+        }
+        let planes =
+            Planes { inputs: self.spec().inputs.len(), layers: self.spec().layers.len(), scratch: SCRATCH, rain };
         if !planes.can_rain(padded) {
             return Lowering::Processor(routing::RAIN);
         }
@@ -160,16 +177,20 @@ impl Solver for StreamPower {
     }
 
     fn cost(&self) -> f64 {
-        45.0 * f64::from(self.steps)
+        let cost = if self.strata.is_empty() { 45.0 } else { COST_WITH_STRATA };
+        cost * f64::from(self.steps)
     }
 }
+
+/// Approximate time for a cell and step with strata, in nanoseconds.
+const COST_WITH_STRATA: f64 = 100.0;
 
 const CODE: &str =
     concat!(include_str!("routing.wgsl"), include_str!("../lower/power.wgsl"), include_str!("stream_power.wgsl"));
 
 /// The planes of the source and of the heights.
 const SOURCE: u32 = 0;
-const HEIGHTS: [u32; 3] = [4, 16, 17];
+const HEIGHTS: [u32; 3] = [5, 17, 18];
 
 /// Number of planes of the shaders in addition to inputs, layers, the routing, counters and the rain.
 const SCRATCH: usize = 7;

@@ -4,13 +4,13 @@
 // The heights use three planes in turn. The planes of layers have other data until the last pass.
 const ERODIBILITY = 1u;
 const UPLIFT = 2u;
-const FLOW = 5u;
-const CHANGE = 6u;
-const POINT = 15u;
+const FLOW = 6u;
+const CHANGE = 7u;
+const POINT = 16u;
 // The piece of the law that applies to each cell.
 const PIECE = CHANGE;
 // The factor and the offset of a piece; two sets of planes.
-const AFFINE = 18u;
+const AFFINE = 19u;
 
 const FREE = 1u;
 const LIMITED = 2u;

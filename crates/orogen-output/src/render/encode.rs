@@ -185,6 +185,8 @@ impl Scene {
         data.number("SEA_TAKES", &self.water.takes);
         data.grid("SHAPE", [ground.shape.as_flattened().into()]);
         data.grid("COVER", [ground.cover.as_flattened().into()]);
+        data.integer("HAS_BEDDING", &[i32::from(!ground.bedding.is_empty())]);
+        data.grid("BEDDING", [ground.bedding.as_slice().into()]);
         data.integer("HAS_MISSING", &[i32::from(!ground.missing.is_empty())]);
         data.grid(
             "MISSING",

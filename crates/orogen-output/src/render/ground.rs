@@ -36,6 +36,7 @@ pub(super) struct Dress<'a> {
     pub palette: Option<&'a Palette>,
     pub range: Option<[f64; 2]>,
     pub cover: Option<[&'a Grid; 4]>,
+    pub bedding: Option<&'a Grid>,
     pub snow_line: Option<f64>,
 }
 
@@ -69,6 +70,8 @@ pub(super) struct GroundCover {
     pub(super) shape: Vec<[f32; 4]>,
     /// Albedo and roughness of every sample; empty if surfaces are not shown.
     pub(super) cover: Vec<[f32; 4]>,
+    /// Height of the surface that the layers of rock follow; empty if they are level.
+    pub(super) bedding: Vec<f32>,
     /// Whether each sample had no finite height; empty if all had one.
     pub(super) missing: Vec<bool>,
     pub(super) columns: usize,
@@ -97,7 +100,7 @@ impl GroundCover {
     /// Prepares the ground of a land. The map's tint uses `palette`, over `range` or the heights of the land. Snow
     /// starts at `snow_line`, in metres, or at a share of the relief.
     pub fn new(land: &Land, relief: &Relief, dress: &Dress) -> GroundCover {
-        let Dress { colors, palette, range, cover, snow_line } = *dress;
+        let Dress { colors, palette, range, cover, bedding, snow_line } = *dress;
         let [columns, rows] = relief.samples();
         let (base, top) = (relief.height_of(0.0), relief.height_of(relief.highest()));
         let base = land.sea_level.map_or(base, |sea| base.max(sea));
@@ -115,6 +118,7 @@ impl GroundCover {
             },
             shape: shape(land, relief),
             cover: covered(cover, columns * rows),
+            bedding: bedding.map_or(Vec::new(), |bedding| bedding.data().iter().map(|z| finite(*z)).collect()),
             missing: missing(land.heights),
             columns,
             rows,
@@ -136,8 +140,17 @@ impl GroundCover {
         self.between(&self.shape, x, y)
     }
 
-    /// Bilinear interpolation of samples of four numbers.
-    fn between(&self, samples: &[[f32; 4]], x: f64, y: f64) -> [f32; 4] {
+    /// The height above the bedding of a point at this height.
+    fn above_bedding(&self, x: f64, y: f64, height: f32) -> f32 {
+        if self.bedding.is_empty() {
+            return height;
+        }
+        let [bedding] = self.between(self.bedding.as_chunks().0, x, y);
+        height - bedding
+    }
+
+    /// Bilinear interpolation of samples of some numbers.
+    fn between<const N: usize>(&self, samples: &[[f32; N]], x: f64, y: f64) -> [f32; N] {
         let (x, y) = (x.clamp(0.0, (self.columns - 1) as f64), y.clamp(0.0, (self.rows - 1) as f64));
         let (i, j) = ((x as usize).min(self.columns - 2), (y as usize).min(self.rows - 2));
         let (u, v) = ((x - i as f64) as f32, (y - j as f64) as f32);
@@ -233,7 +246,8 @@ impl GroundCover {
         let rough_edge = 0.6 * middle + 0.4 * small + 0.25 * fine;
 
         // Rock: partly grayer and browner, with faint beds.
-        let bed = self.strata(site.height + 25.0 * wide + 6.0 * middle, 70.0);
+        let height = self.above_bedding(site.x, site.y, site.height);
+        let bed = self.strata(height + 25.0 * wide + 6.0 * middle, 70.0);
         let shade = 0.5 + 0.30 * wide + 0.25 * middle + 0.25 * small + 0.30 * fine + 0.22 * bed;
         let rock = tone(ROCK, shade.clamp(0.0, 1.0));
         let scree = tone(SCREE, 0.5 + 0.4 * small + 0.4 * fine);
@@ -291,7 +305,7 @@ impl GroundCover {
         let steep = (east * east + south * south).sqrt();
         let [wide, middle, small, fine] = self.noises(site, DESERT_WAVES);
         // Beds of some metres within beds of some tens of metres.
-        let height = site.height + 14.0 * wide + 3.0 * middle;
+        let height = self.above_bedding(site.x, site.y, site.height) + 14.0 * wide + 3.0 * middle;
         let at = f64::from(height) / 42.0;
         let bed = self.grain.at(at, 0.37, 4).value * 1.6 + self.grain.at(at * 3.7, 5.1, 5).value * 0.8;
         let place = (bed * 2.2 + 3.0).clamp(0.0, 4.999);
@@ -326,10 +340,17 @@ impl GroundCover {
         (self.colors != Colors::Clay).then_some(SOIL)
     }
 
-    /// The color of a block's side at a depth below the ground, in metres.
-    pub fn section(&self, along: f64, height: f32, depth: f32, thickness: f32) -> Light {
-        let scale = f64::from(self.cell) / f64::from(thickness);
-        let wave = self.grain.at(along * scale * 0.25, 0.7, 7).value;
+    /// The color of a block's side at a position along it in cells, at a height and a depth below the ground in metres.
+    /// `place` is the position on the land.
+    pub fn section(&self, along: f64, place: [f64; 2], height: f32, depth: f32, thickness: f32) -> Light {
+        // Level layers are bent a little.
+        let wave = if self.bedding.is_empty() {
+            let scale = f64::from(self.cell) / f64::from(thickness);
+            self.grain.at(along * scale * 0.25, 0.7, 7).value
+        } else {
+            0.0
+        };
+        let height = self.above_bedding(place[0], place[1], height);
         let at = f64::from((height / thickness + 0.35 * wave) * 1.0);
         let bed = self.grain.at(at * 3.0, 0.41, 4).value + 0.5 * self.grain.at(at * 9.0, 3.3, 5).value;
         let rock = tone(self.section_rock(), (0.5 + 0.55 * bed).clamp(0.0, 1.0));
@@ -361,6 +382,11 @@ pub(super) fn no_height() -> Light {
 fn mix(from: Light, to: Light, share: f32) -> Light {
     let share = share.clamp(0.0, 1.0);
     std::array::from_fn(|c| from[c] + (to[c] - from[c]) * share)
+}
+
+/// The number, or 0 if it is not finite.
+fn finite(number: f32) -> f32 {
+    if number.is_finite() { number } else { 0.0 }
 }
 
 /// Whether each sample has no finite height; empty if all have one.
@@ -419,8 +445,30 @@ mod tests {
         GroundCover::new(
             &land,
             &Relief::new(&land, 1.0).unwrap(),
-            &Dress { colors, palette: None, range: None, cover: None, snow_line },
+            &Dress { colors, palette: None, range: None, cover: None, bedding: None, snow_line },
         )
+    }
+
+    #[test]
+    fn layers_of_rock_follow_the_bedding() {
+        let window = Window::new(9, 9, 30.0);
+        let heights = Grid::from_data(window, (0..window.len()).map(|at| 40.0 * at as f32).collect()).unwrap();
+        let land = Land { heights: &heights, surface: None, flow: None, sea_level: None };
+        let relief = Relief::new(&land, 1.0).unwrap();
+        let bedding = Grid::from_data(window, (0..window.len()).map(|at| (at % 9) as f32 * 64.0).collect()).unwrap();
+        for colors in [Colors::Natural, Colors::Desert] {
+            let ground = |bedding: Option<&Grid>| {
+                let dress = Dress { colors, palette: None, range: None, cover: None, bedding, snow_line: None };
+                GroundCover::new(&land, &relief, &dress)
+            };
+            let [level, dipping] = [ground(None), ground(Some(&bedding))];
+            let rock = |ground: &GroundCover, x: f64, height: f32| {
+                ground.desert(&GroundPoint { x, y: 4.0, height, footprint: 1.0 }, [2.0, 0.0, 0.0, 0.0]).0
+            };
+            assert_eq!(rock(&dipping, 3.0, 1000.0), rock(&level, 3.0, 1000.0 - 192.0));
+            assert_eq!(rock(&dipping, 3.5, 1000.0), rock(&level, 3.5, 1000.0 - 224.0));
+            assert_eq!(dipping.above_bedding(0.0, 2.0, 70.0), 70.0);
+        }
     }
 
     #[test]
@@ -433,7 +481,8 @@ mod tests {
         let land = Land { heights: &heights, surface: None, flow: None, sea_level: None };
         let relief = Relief::new(&land, 1.0).unwrap();
         for colors in [Colors::Natural, Colors::Desert, Colors::Surfaces, Colors::Map, Colors::Clay] {
-            let dress = Dress { colors, palette: None, range: None, cover: Some([&layer; 4]), snow_line: None };
+            let dress =
+                Dress { colors, palette: None, range: None, cover: Some([&layer; 4]), bedding: None, snow_line: None };
             let ground = GroundCover::new(&land, &relief, &dress);
             let albedo = |x: f64, y: f64| ground.look(&GroundPoint { x, y, height: 3600.0, footprint: 1e6 }).albedo;
             let [red, green, blue] = albedo(4.3, 3.7);
@@ -480,7 +529,7 @@ mod tests {
                 let look = ground.look(&site);
                 assert!(look.albedo.iter().all(|c| (0.0..=1.0).contains(c)), "{colors:?} {k}: {look:?}");
                 assert!(look.slope.iter().all(|c| c.is_finite()));
-                assert!(ground.section(k, 100.0, k as f32, 300.0).iter().all(|c| (0.0..=1.0).contains(c)));
+                assert!(ground.section(k, [0.0; 2], 100.0, k as f32, 300.0).iter().all(|c| (0.0..=1.0).contains(c)));
             }
         }
     }

@@ -50,6 +50,9 @@ pub struct Style<'a> {
     pub range: Option<[f64; 2]>,
     /// Albedo (red, green and blue in linear light) and roughness for [`Colors::Surfaces`], over the land's window.
     pub cover: Option<[&'a Grid; 4]>,
+    /// Height of a surface that the layers of rock follow, in metres, over the land's window; by default they are
+    /// level.
+    pub bedding: Option<&'a Grid>,
     /// Height at which snow starts, in metres; by default chosen by the relief.
     pub snow_line: Option<f64>,
     /// Number of samples per pixel.
@@ -67,6 +70,7 @@ impl Default for Style<'_> {
             palette: None,
             range: None,
             cover: None,
+            bedding: None,
             snow_line: None,
             samples: 5,
         }
@@ -163,8 +167,12 @@ impl Scene {
             let message = "a picture of surfaces needs their albedo and roughness over the window of the heights";
             return Err(Error::new(ErrorKind::Request, message));
         }
-        let Style { colors, palette, range, cover, snow_line, .. } = *style;
-        let dress = Dress { colors, palette, range, cover, snow_line };
+        if style.bedding.is_some_and(|bedding| bedding.window() != land.heights.window()) {
+            let message = "bedding and heights of a picture must have the same window";
+            return Err(Error::new(ErrorKind::Request, message));
+        }
+        let Style { colors, palette, range, cover, bedding, snow_line, .. } = *style;
+        let dress = Dress { colors, palette, range, cover, bedding, snow_line };
         let ground = GroundCover::new(land, &relief, &dress);
         painting.finish();
         progress.check()?;

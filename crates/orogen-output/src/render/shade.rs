@@ -137,6 +137,7 @@ impl Scene {
                 let thickness = metres(-self.floor).max(1.0);
                 self.ground.section(
                     along,
+                    [x, y],
                     self.relief.height_of(z) as f32,
                     metres(self.relief.ground(x, y) - z),
                     thickness,

@@ -107,6 +107,7 @@ pub static ALL: [OpGroup; 9] = [
             "orographic-rain",
             "evapotranspiration",
             "biome",
+            "outcrop",
         ],
     ),
 ];

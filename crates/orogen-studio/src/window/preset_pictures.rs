@@ -13,6 +13,7 @@
     ("dunes", include_bytes!("../../assets/presets/dunes.png")),
     ("endless", include_bytes!("../../assets/presets/endless.png")),
     ("fjords", include_bytes!("../../assets/presets/fjords.png")),
+    ("folds", include_bytes!("../../assets/presets/folds.png")),
     ("glaciers", include_bytes!("../../assets/presets/glaciers.png")),
     ("hills", include_bytes!("../../assets/presets/hills.png")),
     ("himalaya", include_bytes!("../../assets/presets/himalaya.png")),

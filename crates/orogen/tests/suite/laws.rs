@@ -1,15 +1,16 @@
 //! Invariants of all nodes. New nodes are included automatically.
 
 use crate::support::{laws_of, open, recipe_of, world_of};
-use orogen::declare::Shape;
-use orogen::field::{Add, Constant, Fbm, Perlin, Warp};
+use orogen::declare::{Shape, Stratum};
+use orogen::field::{Add, Constant, Fbm, Outcrop, Perlin, Warp};
+use orogen::filter::{LocalStreamPower, Thermal};
 use orogen::ids::Id;
 use orogen::laws::{CELLS, Violation};
 use orogen::node::Node;
 use orogen::op::Op;
 use orogen::plan::Plan;
 use orogen::plan::steps::Step;
-use orogen::solver::Normalise;
+use orogen::solver::{Normalise, StreamPower};
 use orogen::value::Value;
 use orogen::{Grid, Progress, Recipe, Window, World, WorldSpec};
 
@@ -68,6 +69,29 @@ fn every_solver_obeys_the_laws_with_a_margin() {
     let solvers = Node::all().into_iter().filter(|node| node.margin().is_some());
     let checked = solvers.map(|node| holds(laws_of(&node).margin(10.24))).count();
     assert_eq!(checked, 14);
+}
+
+#[test]
+fn ops_in_strata_obey_the_laws() {
+    let strata = || {
+        let strata = [(7.0, 0.2, 70.0), (20.0, 3.0, 30.0)];
+        let stratum =
+            |(thickness, erodibility_factor, talus_angle)| Stratum { thickness, erodibility_factor, talus_angle };
+        strata.map(stratum).to_vec()
+    };
+    let nodes: [Node; 4] = [
+        Outcrop { strata: strata(), repeat_strata: true, ..Outcrop::default() }.into(),
+        Thermal { strata: strata(), repeat_strata: true, iterations: 9, ..Thermal::default() }.into(),
+        LocalStreamPower { strata: strata(), repeat_strata: true, iterations: 9, ..LocalStreamPower::default() }.into(),
+        StreamPower { strata: strata(), repeat_strata: true, steps: 3, ..StreamPower::default() }.into(),
+    ];
+    for node in nodes {
+        for cell in CELLS {
+            holds(laws_of(&node).tiles(cell, true));
+        }
+        holds(laws_of(&node).levels());
+        holds(laws_of(&node).stored(1.0 / 3.0));
+    }
 }
 
 #[test]

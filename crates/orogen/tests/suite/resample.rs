@@ -206,11 +206,18 @@ fn what_cannot_be_is_refused_with_a_sentence() {
 }
 
 #[test]
-fn the_preset_mesa_is_the_same_land_at_any_cell() {
-    let world = World::open(orogen::presets::find("mesa").unwrap().recipe().unwrap()).unwrap();
+fn ground_with_resampled_weathering_is_the_same_land_at_any_cell() {
+    let text = "orogen = 1\n[world]\ncell = 20\n[nodes.noise]\nop = \"billow\"\n\
+        [nodes.ground]\nop = \"expr\"\nexpr = \"900 * noise\"\n\
+        [nodes.weathered]\nop = \"thermal\"\nsource = \"ground\"\niterations = 16\n\
+        [nodes.change]\nop = \"expr\"\nexpr = \"weathered - ground\"\n\
+        [nodes.weathering]\nop = \"resample\"\nsource = \"change\"\n\
+        [nodes.terrain]\nop = \"add\"\na = \"ground\"\nb = \"weathering\"\n[outputs]\nheight = \"terrain\"\n";
+    let world = World::open(Recipe::parse(text, "test.toml").unwrap()).unwrap();
     let window = Window::new(129, 65, 20.0).at(400, 512);
     let land = world.window("height", &window).unwrap();
-    assert_eq!(land, world.window("weathered", &window).unwrap());
+    let weathered = world.window("weathered", &window).unwrap();
+    assert!(land.data().iter().zip(weathered.data()).all(|(a, b)| (a - b).abs() < 1e-3));
     for ratio in [2, 8] {
         let coarse = Window::new(128 / ratio + 1, 64 / ratio + 1, 20.0 * ratio as f64);
         let coarse = world.window("height", &coarse.at(400 / ratio as i64, 512 / ratio as i64)).unwrap();
