@@ -15,8 +15,6 @@ fn part(preset: &str) -> &'static str {
         "continent" => "16824,23480,400,400",
         // Glaciers and cirques.
         "glaciers" => "430,540,400,400",
-        // Transverse ridges, a hill, and barchans.
-        "dunes" => "180,440,400,400",
         // Rims and walls.
         "canyon" => "250,330,400,400",
         // The whole world.

@@ -36,7 +36,7 @@ pub struct Dunes {
 impl Default for Dunes {
     /// The defaults of the op `dunes`.
     fn default() -> Dunes {
-        Dunes { wavelength: 160.0, flux: 100.0, years: 60.0, wind_direction: 270.0, wind_spread: 0.0, seed: 0 }
+        Dunes { wavelength: 160.0, flux: 100.0, years: 110.0, wind_direction: 270.0, wind_spread: 0.0, seed: 0 }
     }
 }
 
@@ -60,7 +60,7 @@ pub struct SandyGround {
 }
 
 /// Duration of a step, in squares of the cell over the flux. Faster steps make ripples of a few cells.
-const STEP: f64 = 0.12;
+const STEP: f64 = 0.17;
 
 /// Maximum number of steps.
 pub const MAX_STEPS: f64 = 50_000.0;

@@ -79,7 +79,7 @@ fn sand_is_kept() {
 
 #[test]
 fn a_heap_becomes_a_barchan() {
-    let law = Dunes::default().with_years(14.0);
+    let law = Dunes::default().with_years(20.0);
     let heap = |i: usize, j: usize| {
         let (x, y) = ((i as f32 - 24.0) * CELL as f32, (j as f32 - 48.0) * CELL as f32);
         (16.0 - 0.16 * (x * x + y * y).sqrt()).max(0.0)

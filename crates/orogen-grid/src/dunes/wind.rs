@@ -9,7 +9,7 @@ use crate::progress::Progress;
 
 /// A of the shear stress over low hills (Jackson and Hunt 1975, Kroy and others 2002): tau = tau0 (1 + A (|k| + i B k) h)
 /// for a wave h of the heights with the wave number k.
-const SPEED_UP: f32 = 3.5;
+const SPEED_UP: f32 = 2.4;
 
 /// B: how far the maximum of the stress lies before the crest. It decides the wavelength of young dunes.
 pub(super) const ASYMMETRY: f32 = 0.6;

@@ -11,13 +11,13 @@ op! {
     /// there is much, and long dunes along the mean wind where two winds alternate.
     ///
     /// The continuous model of Sauermann, Kroy and Herrmann (2001, 2002). The stress of the wind over heights h is 1 +
-    /// A (|k| + i B k) h for each wave number k, with A = 3.5 and B = 0.6: it is highest a little before crests. The
+    /// A (|k| + i B k) h for each wave number k, with A = 2.4 and B = 0.6: it is highest a little before crests. The
     /// flux of sand follows the saturated flux over a saturation length, `wavelength` / 15.7. Behind crests, under a
     /// line that falls at 14 degrees, there is no wind. Sand slides where it is steeper than 33 degrees. All samples
     /// change at once. Sand is neither added nor lost: what leaves the domain enters it on the other side.
     ///
     /// A `cell` of an eighth of the `wavelength` or less shows dunes; at a twentieth slip faces are sharp. Time grows
-    /// with `years`, `flux` and the fourth power of 1 / `cell`: about 30 ns per sample and step of 0.12 `cell`^2 /
+    /// with `years`, `flux` and the fourth power of 1 / `cell`: about 30 ns per sample and step of 0.17 `cell`^2 /
     /// `flux` years.
     pub struct Dunes = "dunes", solver, revision 1;
     margin;
@@ -34,8 +34,8 @@ op! {
         wavelength: f64 = 160.0, unit "m", range 1e-3 to 1e6;
         /// Flux of sand over level sand: 20 to 200 m^2/yr in deserts.
         flux: f64 = 100.0, unit "m^2/yr", range 0.0 to 1e6;
-        /// Duration. Dunes are high after about 0.3 `wavelength`^2 / `flux` years.
-        years: f64 = 80.0, unit "yr", range 0.0 to 1e7;
+        /// Duration. Dunes are high after about 0.4 `wavelength`^2 / `flux` years.
+        years: f64 = 110.0, unit "yr", range 0.0 to 1e7;
         /// Direction that the wind comes from, clockwise from north: 270 is a west wind.
         wind_direction: f64 = 270.0, unit "degrees", range -360.0 to 360.0;
         /// Angle between two winds that alternate, on both sides of `wind_direction`; 0 is one wind. From about 90 on,

@@ -119,7 +119,7 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ("craters", "diffusion") => Value::Number(5.0 * world.cell * world.cell),
             ("dunes", "wavelength") => Value::Number(9.0 * world.cell),
             // Some thirty steps.
-            ("dunes", "years") => Value::Number(0.036 * world.cell * world.cell),
+            ("dunes", "years") => Value::Number(0.05 * world.cell * world.cell),
             ("dunes", "wind_spread") => Value::Number(40.0),
             ("select-height", "range") => pair(-0.1, 0.1),
             ("select-height", "falloff") => pair(0.3, 0.2),
