@@ -26,7 +26,7 @@ fn steepest(grid: &Grid) -> f64 {
             steepest = steepest.max((east * east + south * south).sqrt() / (2.0 * CELL as f32));
         }
     }
-    f64::from(steepest).atan().to_degrees()
+    libm::atan(f64::from(steepest)).to_degrees()
 }
 
 #[test]
