@@ -14,6 +14,9 @@ fn world_of(node: &Node, cell: f64, own: f64) -> World {
     let param = node.spec().params.iter().position(|param| param.name == "cell").unwrap();
     node.set_param(param, &Value::Number(own)).unwrap();
     node.set_input(0, "land".into());
+    if node.spec().op == "dunes" {
+        node.set_input(1, 3.0.into());
+    }
     let spec = WorldSpec::default().with_seed(5).with_size(Some([1200.0, 880.0])).with_cell(cell);
     let mut recipe = Recipe::new(spec);
     recipe.add("noise", Fbm { seed: 3, wavelength: 300.0, octaves: 4, ..Fbm::default() });
@@ -55,7 +58,17 @@ fn a_solver_at_its_own_cell_is_that_of_a_coarser_world() {
         }
         checked.push(op);
     }
-    let expected =
-        ["bake", "breach", "drainage", "fill", "lakes", "orographic-rain", "rivers", "select-share", "stream-power"];
+    let expected = [
+        "bake",
+        "breach",
+        "drainage",
+        "dunes",
+        "fill",
+        "lakes",
+        "orographic-rain",
+        "rivers",
+        "select-share",
+        "stream-power",
+    ];
     assert_eq!(checked, expected);
 }

@@ -69,6 +69,10 @@ fn a_world_with_a_margin_is_the_middle_of_a_larger_world() {
     let mut checked = 0;
     for mut node in Node::all().into_iter().filter(|node| node.margin().is_some()) {
         let op = node.spec().op;
+        if op == "dunes" {
+            // Its domain is a torus: what is beyond the margin differs.
+            continue;
+        }
         let small = Window::new(SAMPLES[0], SAMPLES[1], CELL);
         let middle = small.at(AROUND as i64, AROUND as i64);
         let larger = layers_of(recipe_of(&node, world(AROUND), AROUND), &middle);

@@ -83,7 +83,8 @@ impl Dunes {
     pub fn memory(&self, window: &Window) -> u64 {
         let torus = Torus::new(window, self.wavelength);
         // The two grids before and after, and the planes of the state and of a step.
-        window.len() as u64 * 16 + torus.len() as u64 * 4 * (4 + wind::PLANES as u64)
+        let planes = (torus.len() as u64).saturating_mul(4 * (4 + wind::PLANES as u64));
+        (window.len() as u64).saturating_mul(16).saturating_add(planes)
     }
 
     /// The ground with dunes, from the ground and the mean thickness of its sand at the beginning.

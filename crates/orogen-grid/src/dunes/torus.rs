@@ -52,12 +52,12 @@ impl Torus {
     pub(super) fn new(window: &Window, wavelength: f64) -> Torus {
         let strip = (wavelength / window.cell).ceil().clamp(8.0, 64.0) as usize;
         let inner = [window.width, window.height];
-        Torus { inner, sides: inner.map(|side| side + strip) }
+        Torus { inner, sides: inner.map(|side| side.saturating_add(strip)) }
     }
 
     /// Number of samples.
     pub(super) fn len(&self) -> usize {
-        self.sides[0] * self.sides[1]
+        self.sides[0].saturating_mul(self.sides[1])
     }
 
     /// The values of the window, continued over the strips.

@@ -21,6 +21,10 @@ fn chunks_and_points_of_presets_allocate_nothing_once_warm() {
             // A filter or a levelled op allocates grids for each chunk.
             continue;
         }
+        if preset.name == "craters" {
+            // Lists of the craters that reach a chunk are made for each.
+            continue;
+        }
         seen += 1;
         let sampler = Sampler::new(&world, "height").unwrap();
         for cells in [64, 256] {
