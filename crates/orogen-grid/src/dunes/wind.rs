@@ -7,8 +7,8 @@ use crate::error::Result;
 use crate::parallel;
 use crate::progress::Progress;
 
-/// A of the shear stress over low hills (Jackson and Hunt 1975, Kroy and others 2002): tau = tau0 (1 + A (|k| + i B k)
-/// h) for a wave h of the heights with the wave number k.
+/// A of the shear stress over low hills (Jackson and Hunt 1975, Kroy and others 2002): tau0 (1 + A (|k| + i B k) h) for
+/// a wave h of the heights with the wave number k.
 const SPEED_UP: f32 = 2.4;
 
 /// B: how far the maximum of the stress lies before the crest. It decides the wavelength of young dunes.
