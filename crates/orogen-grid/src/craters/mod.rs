@@ -88,7 +88,8 @@ impl Craters {
 
 impl PreparedCraters {
     /// Calls `take` for each of the numbered `positions`, with its number and what is there: NaN where a position is
-    /// not finite. A result does not depend on the other positions; it is fastest for positions that are close together.
+    /// not finite. A result does not depend on the other positions; it is fastest for positions that are close
+    /// together.
     pub fn each(&self, positions: impl Iterator<Item = (usize, [f64; 2])>, mut take: impl FnMut(usize, Cratered)) {
         let mut shared = Vec::with_capacity(SHARED);
         let (mut craters, mut found) = (Vec::new(), Vec::new());
