@@ -116,6 +116,9 @@ const NOT_JUDGED: &[(&str, &str)] = &[
     ("caves", "its land is blocks of a metre"),
     ("classic", "it is noise, for textbooks"),
     ("continent", "its land is that of `endless`"),
+    ("craters", "its land is that of the Moon"),
+    ("dunes", "no type of real land is sand"),
+    ("folds", "no type of real land is a fold belt"),
     ("tile-continent", "its land is made to be read as tiles"),
     ("tile-island", "its land is made to be read as tiles"),
 ];
