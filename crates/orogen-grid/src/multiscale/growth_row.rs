@@ -6,7 +6,7 @@ use super::law::CONCAVITY;
 use crate::erosion::power::power;
 use std::f32::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-/// Half-width, in metres, of the floors of the smallest rivers that have floors.
+/// Half-width, in metres, of the floors of the smallest rivers that have floors. `growth.wgsl` has it, too.
 pub const FLOOR_WIDTH: f32 = 75.0;
 
 /// Maximum slope of a floor.

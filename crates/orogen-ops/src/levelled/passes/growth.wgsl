@@ -94,7 +94,7 @@ fn grow(base: u32, at: vec2<i32>) {
         let share = area * floor_area(base);
         var own = 0.0;
         if (share > 1.0 && growing.fixed < WATER) {
-            own = 100.0 * sqrt(share) * plane(WIDTH, at);
+            own = 75.0 * sqrt(share) * plane(WIDTH, at);
         }
         set_plane(SECOND_FLOOR - ((frame.step >> 24u) & 1u), at, max(growing.floor_left, own));
     }
