@@ -55,15 +55,17 @@ def similarity(a, b):
     return float((((2 * mx * my + one) * (2 * covariance + two)) / ((mx**2 + my**2 + one) * (x.var(1) + y.var(1) + two))).mean())
 
 
-# The land of each, as a share of its relief: where levels decide by the last digits, single slopes differ.
-for recipe, share in [("island", 2e-4), ("mesa", 2e-4), ("archipelago", 2e-4), ("alpine", 2e-3)]:
+# The land of each, as a share of its relief. Where levels decide by the last digits, single slopes differ by more: one
+# sample in ten thousand.
+for recipe, share, samples in [("island", 2e-4, 1), ("mesa", 2e-4, 1), ("archipelago", 2e-4, 1), ("alpine", 5e-4, 0.9999)]:
     arguments = ["generate", recipe, "--size", "256", "--quiet"]
     _, exact_messages = run(*arguments, "-o", f"{recipe}-cpu")
     _, messages = run(*arguments, "-o", f"{recipe}-gpu", "--device", "gpu")
     checks.equal(f"{recipe}: nothing stands in", messages, [])
     (exact, summary), (preview, _) = heights(f"{recipe}-cpu"), heights(f"{recipe}-gpu")
     relief = summary["height_max"] - summary["height_min"]
-    checks.that(f"{recipe}: the preview is close", abs(preview - exact).max() < share * relief, abs(preview - exact).max())
+    apart = float(numpy.quantile(abs(preview - exact), samples))
+    checks.that(f"{recipe}: the preview is close", apart < share * relief, apart)
 
     alike = similarity(WORK / f"{recipe}-cpu" / "map.png", WORK / f"{recipe}-gpu" / "map.png")
     checks.that(f"{recipe}: the maps look the same", alike >= 0.98, alike)
