@@ -10,6 +10,7 @@ use std::path::Path;
 
 use orogen::{Grid, Recipe, Window, World, open, presets};
 
+use crate::options::number;
 use network::Network;
 
 /// The options of the measurement.
@@ -101,21 +102,14 @@ fn parse(args: &[String]) -> Result<Request, String> {
     Ok(request)
 }
 
-fn number<T: std::str::FromStr>(option: &str, text: &str) -> Result<T, String> {
-    text.trim().parse().map_err(|_| format!("{option}: '{text}' is not a valid number"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn parsed(line: &str) -> Result<Request, String> {
-        parse(&line.split_whitespace().map(str::to_owned).collect::<Vec<_>>())
-    }
+    use crate::options::words;
 
     #[test]
     fn options() {
-        let request = parsed("endless a.tif --window -512,-512,1024,1024 --cell 60").expect("well formed");
+        let request = parse(&words("endless a.tif --window -512,-512,1024,1024 --cell 60")).expect("well formed");
         assert_eq!(request.sources, ["endless", "a.tif"]);
         assert_eq!((request.window, request.cell), (Some([-512, -512, 1024, 1024]), Some(60.0)));
         for (line, expect) in [
@@ -125,7 +119,7 @@ mod tests {
             ("alpine --seed x", "'x' is not a valid number"),
             ("alpine --fast", "no option '--fast'"),
         ] {
-            let message = parsed(line).expect_err(expect);
+            let message = parse(&words(line)).expect_err(expect);
             assert!(message.contains(expect), "{message}");
         }
     }

@@ -8,6 +8,7 @@ mod support;
 use std::path::Path;
 use std::time::Instant;
 
+use crate::options::number;
 use orogen::{Options, Recipe, Session, Window, World, presets};
 use support::borders::{self, Places};
 use support::layers::{Tiles, tiles_in, tiles_of};
@@ -128,21 +129,15 @@ fn parse(args: &[String]) -> Result<Request, String> {
     }
 }
 
-fn number<T: std::str::FromStr>(option: &str, text: &str) -> Result<T, String> {
-    text.trim().parse().map_err(|_| format!("{option}: '{text}' is not a valid number"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn parsed(line: &str) -> Result<Request, String> {
-        parse(&line.split_whitespace().map(str::to_owned).collect::<Vec<_>>())
-    }
+    use crate::options::words;
 
     #[test]
     fn options() {
-        let request = parsed("alpine --origin -5,7 --side 100 --pairs 10 --near 5 --fresh").expect("well formed");
+        let request =
+            parse(&words("alpine --origin -5,7 --side 100 --pairs 10 --near 5 --fresh")).expect("well formed");
         assert_eq!((request.recipe.as_str(), request.origin, request.side), ("alpine", [-5, 7], Some(100)));
         assert_eq!((request.pairs, request.near, request.fresh, request.cell), (10, 5, true, None));
         for (line, expect) in [
@@ -152,7 +147,7 @@ mod tests {
             ("alpine --side x", "'x' is not a valid number"),
             ("alpine --quick", "no option '--quick'"),
         ] {
-            let error = parsed(line).expect_err(expect);
+            let error = parse(&words(line)).expect_err(expect);
             assert!(error.contains(expect), "{error}");
         }
     }
