@@ -126,11 +126,11 @@ modules = {
 checks.equal("the module of a page", modules[plain_host], {"/studio/studio_bg.wasm.gz"})
 checks.equal("the module of an isolated page", modules[isolated_host], {"/studio/threads/studio_bg.wasm.gz"})
 checks.equal("isolated pages", [single.get("isIsolated"), threads.get("isIsolated")], [False, True])
-# Two workers at most, each with its threads.
+# Two workers at most, each with its threads; the second may just be starting its own.
 cores = threads.get("cores", 1)
 each = 1 + (min(cores, 16) if cores > 1 else 0)
 checks.that("workers without threads", single.get("workers") in (1, 2), single)
-checks.that("workers with threads", threads.get("workers") in (each, 2 * each), threads)
+checks.that("workers with threads", each <= threads.get("workers", 0) <= 2 * each, threads)
 changed = said["workers"].get("changed")
 checks.that("changes replace no worker", changed in (each, 2 * each), changed)
 checks.that("changes are made with threads", texts.get("heavy", "") not in ("", texts.get("heavyBefore")))

@@ -3,12 +3,18 @@
 use super::children::{Children, heir};
 use super::distances::Distances;
 use super::drainage::{FREE, WATER};
+use super::growth::least_rise;
 use super::lakes::{drains, is_lake};
 use super::level::Level;
 use super::links::{Child, Links};
+use super::passages::{Drawn, Passage};
+use super::refinement::Refinement;
 use super::shores::{LAND, Water};
 use super::stencil::code;
-use crate::hydrology::direction::NONE;
+use crate::hydrology::direction::{NONE, STEPS};
+
+/// Height of the end of a tributary above the bed of a drawn river, in metres.
+const DRAWN_STEP: f32 = 0.012;
 
 /// Height of nodes that have no height yet.
 pub const UNKNOWN: f32 = 1e30;
@@ -23,10 +29,23 @@ pub struct Carved {
     pub fixed: Vec<f32>,
     /// `None` on the finest level, where nodes are on the lattice.
     pub distances: Option<Distances>,
+    /// Areas of drawn rivers by the drawing, in cells; 0 elsewhere. Empty without drawn rivers.
+    pub drawn: Vec<f32>,
 }
 
-/// The children with the kept links and the given water. Exact except for seven cells at the edge.
-pub fn carve(parent: &Level, links: &Links, children: &Children, water: Water) -> Carved {
+/// Maximum number of cells along a drawn river to which the area of a tributary is added.
+pub const JOINED: usize = 8;
+
+/// The children with the kept links, the given water and the drawn rivers. Exact except for seven cells at the edge,
+/// and [`JOINED`] more with drawn rivers.
+pub fn carve(
+    land: &Refinement,
+    parent: &Level,
+    links: &Links,
+    children: &Children,
+    water: Water,
+    drawn: &Drawn,
+) -> Carved {
     let Water { levels, gained } = water;
     let extent = children.extent;
     let fixed = levels.iter().map(|&level| if level < LAND { WATER } else { FREE }).collect();
@@ -40,17 +59,24 @@ pub fn carve(parent: &Level, links: &Links, children: &Children, water: Water) -
         receiver: vec![f32::from(NONE); extent.len()],
         fixed,
         distances: children.is_irregular().then(|| Distances::new(extent, &children.east, &children.south)),
+        drawn: vec![0.0; if drawn.below.is_empty() { 0 } else { extent.len() }],
     };
     carved.lead_lakes(parent, links, children);
+    let kilometres = land.kilometres(children.depth);
+    let scale = Scale { rise: least_rise(land, children.depth), cells: 1.0 / (kilometres * kilometres) };
+    carved.draw(parent, children, drawn, scale);
     let mut arrivals = Vec::new();
     for q in links.kept(parent).filter(|&q| drains(parent.receiver[q])) {
-        arrivals.push(carved.leave(parent, links, children, q));
+        arrivals.push(carved.leave(parent, links, children, drawn, q));
     }
     for arrival in &arrivals {
         carved.arrive(parent, links, children, arrival);
     }
     for arrival in &arrivals {
         carved.bound_area(parent, links, arrival);
+    }
+    for (area, drawn) in carved.area.iter_mut().zip(&carved.drawn) {
+        *area = area.max(*drawn);
     }
     for area in carved.area.iter_mut().filter(|area| **area < 1.0) {
         *area = 1.0;
@@ -61,6 +87,13 @@ pub fn carve(parent: &Level, links: &Links, children: &Children, water: Water) -
         }
     }
     carved
+}
+
+/// Minimum fall from a cell of a drawn river to water, in metres, and the number of cells of a square kilometre.
+#[derive(Clone, Copy)]
+struct Scale {
+    rise: f32,
+    cells: f64,
 }
 
 /// The last part of a link, after it has left its parent's cell.
@@ -84,11 +117,70 @@ impl Carved {
         }
     }
 
-    /// Carves a link from its parent to the entry into the receiver's cell.
-    fn leave(&mut self, parent: &Level, links: &Links, children: &Children, q: usize) -> Arrival {
+    /// Whether a drawn river leaves this cell on land.
+    fn is_drawn(&self, q: usize) -> bool {
+        self.drawn.get(q).is_some_and(|area| *area > 0.0)
+    }
+
+    /// A drawn river takes a shortcut past this cell.
+    pub fn undraw(&mut self, q: usize) {
+        if let Some(area) = self.drawn.get_mut(q) {
+            *area = 0.0;
+        }
+    }
+
+    /// Leads drawn rivers through the cells that they cross, at their own heights, to the water that they end in.
+    fn draw(&mut self, parent: &Level, children: &Children, drawn: &Drawn, scale: Scale) {
+        let width = children.extent.width;
+        let inner = |q: usize| {
+            let (i, j) = (q % width, q / width);
+            (1..width - 1).contains(&i) && (1..children.extent.height - 1).contains(&j)
+        };
+        for (q, passage) in drawn.below.left().filter(|(q, _)| inner(*q)) {
+            if self.fixed[q] != WATER {
+                self.pass(children, q, passage, passage.code, scale);
+            }
+        }
+        // A river that ends on land, next to water. If it also ended there on the coarser level, its node is kept.
+        for (q, passage) in drawn.below.ended().filter(|(q, _)| inner(*q)) {
+            let p = q / width / 2 * (width / 2) + q % width / 2;
+            let is_kept = parent.receiver[p] < NONE && drawn.above.at(p).is_some_and(|above| above.code == NONE);
+            if self.fixed[q] == WATER || is_kept {
+                continue;
+            }
+            let ways = [0u8, 2, 4, 6, 1, 3, 5, 7].into_iter();
+            if let Some(code) = ways.into_iter().find(|code| self.fixed[beside(q, *code, width)] == WATER) {
+                self.pass(children, q, passage, code, scale);
+            }
+        }
+    }
+
+    /// Leads a drawn river from a cell to the next one.
+    fn pass(&mut self, children: &Children, q: usize, passage: &Passage, code: u8, scale: Scale) {
+        let to = beside(q, code, children.extent.width);
+        let least = if self.fixed[to] == WATER { self.height[to] + scale.rise } else { f32::NEG_INFINITY };
+        self.height[q] = passage.height.max(least);
+        self.connect(children, q, to);
+        self.drawn[q] = ((passage.area * scale.cells) as f32).max(1.0);
+    }
+
+    /// The cell after one of a drawn river.
+    fn next(&self, q: usize, width: usize) -> usize {
+        beside(q, self.receiver[q] as u8, width)
+    }
+
+    /// Carves a link from its parent to the entry into the receiver's cell. A drawn river has its own course.
+    fn leave(&mut self, parent: &Level, links: &Links, children: &Children, drawn: &Drawn, q: usize) -> Arrival {
         let parents = links.width;
         let (link, target) = (links.list[q], links.target(parent, q));
         let start = Child { parent: q, corner: heir(parent, q) };
+        if self.is_drawn(start.index(parents)) {
+            let own = start.index(parents);
+            let entry = self.next(own, children.extent.width);
+            let area = if drawn.above.is_led(parent, q) { 4.0 * parent.area[q] } else { 0.0 };
+            self.area[own] += area;
+            return Arrival { target: Child::at(entry, parents).parent, entry, height: self.height[own], area };
+        }
         let exit = Child { parent: q, corner: link.exit };
         let entry = Child { parent: target, corner: link.entry };
         let end = Child { parent: target, corner: heir(parent, target) };
@@ -112,10 +204,12 @@ impl Carved {
         // The area grows by one cell at each step, so that it is never less than the inflow.
         let mut area = 4.0 * parent.area[q];
         let [start, exit, entry] = [start, exit, entry].map(|child| child.index(parents));
-        self.set(start, top, area);
+        // A tributary ends above the bed of the drawn river that it meets.
+        let least = if self.is_drawn(entry) { self.height[entry] + DRAWN_STEP } else { f32::NEG_INFINITY };
+        self.set(start, top.max(least + DRAWN_STEP), area);
         if exit != start {
             area += 1.0;
-            self.set(exit, top + fall * to_exit, area);
+            self.set(exit, (top + fall * to_exit).max(least), area);
             self.connect(children, start, exit);
         }
         match via {
@@ -137,6 +231,10 @@ impl Carved {
         let own = |corner| Child { parent: target, corner }.index(links.width);
         let end = own(heir(parent, target));
         let drains = drains(parent.receiver[target]);
+        if self.is_drawn(entry) {
+            self.join(parent, links, entry, arrival.area);
+            return;
+        }
         if entry == end || (self.fixed[entry] == WATER && !drains) {
             return;
         }
@@ -151,15 +249,39 @@ impl Carved {
         self.connect(children, entry, end);
     }
 
+    /// Adds the area of a tributary to the cells of a drawn river down to the next node of the coarser level, whose area
+    /// contains it.
+    fn join(&mut self, parent: &Level, links: &Links, entry: usize, area: f32) {
+        let (mut way, mut at) = ([0; JOINED], entry);
+        let mut most = f32::INFINITY;
+        let mut cells = 0;
+        for passed in &mut way {
+            let Child { parent: above, corner } = Child::at(at, links.width);
+            if !self.is_drawn(at) {
+                break;
+            }
+            if links.list[above].kept && heir(parent, above) == corner {
+                most = 4.0 * parent.area[above];
+                break;
+            }
+            (*passed, cells) = (at, cells + 1);
+            at = self.next(at, 2 * links.width);
+        }
+        for &q in &way[..cells] {
+            let own = if self.area[q] > 0.0 { 0.0 } else { 1.0 };
+            self.area[q] = (self.area[q] + area + own).min(most.max(self.area[q]));
+        }
+    }
+
     /// Adjusts the areas between the node of the target and its donors, because areas on the coarser level need not be
     /// the sums of their donors' areas.
     fn bound_area(&mut self, parent: &Level, links: &Links, arrival: &Arrival) {
         let (target, entry) = (arrival.target, arrival.entry);
-        if !drains(parent.receiver[target]) {
-            return;
-        }
         let own = |corner| Child { parent: target, corner }.index(links.width);
         let end = own(heir(parent, target));
+        if !drains(parent.receiver[target]) || self.is_drawn(entry) {
+            return;
+        }
         if entry != end && own(links.list[target].exit) == entry {
             return;
         }
@@ -169,10 +291,25 @@ impl Carved {
         self.area[end] = self.area[end].max(if entry == end { arrival.area } else { self.area[entry] });
     }
 
-    /// Rivers with an area of less than `least` cells choose their receivers again.
+    /// The cells of drawn rivers, and their areas by the drawing, in cells.
+    pub fn drawn_areas(&self) -> Vec<(usize, f32)> {
+        self.drawn.iter().copied().enumerate().filter(|(_, area)| *area > 0.0).collect()
+    }
+
+    /// Minimum heights with which drawn rivers keep theirs. `least` is empty if there are no others, and otherwise
+    /// `anything` where there is none.
+    pub fn hold_drawn(&self, least: &mut Vec<f32>, anything: f32) {
+        for (q, _) in self.drawn_areas() {
+            least.resize(self.height.len(), anything);
+            least[q] = self.height[q];
+        }
+    }
+
+    /// Rivers with an area of less than `least` cells choose their receivers again, but not drawn ones.
     pub fn free(&mut self, least: f32) {
-        for (fixed, &area) in self.fixed.iter_mut().zip(&self.area) {
-            if area < least && *fixed < f32::from(NONE) {
+        for (q, (fixed, &area)) in self.fixed.iter_mut().zip(&self.area).enumerate() {
+            let is_drawn = self.drawn.get(q).is_some_and(|area| *area > 0.0);
+            if area < least && *fixed < f32::from(NONE) && !is_drawn {
                 *fixed = FREE;
             }
         }
@@ -203,4 +340,10 @@ impl Carved {
 fn code_between(children: &Children, from: usize, to: usize) -> u8 {
     let width = children.extent.width;
     code((to % width) as isize - (from % width) as isize, (to / width) as isize - (from / width) as isize)
+}
+
+/// The cell next to `q` in the direction of a code.
+fn beside(q: usize, code: u8, width: usize) -> usize {
+    let (east, south) = STEPS[usize::from(code & 7)];
+    q.wrapping_add_signed(south * width as isize + east)
 }

@@ -5,13 +5,14 @@ use super::geography::Geography;
 use super::given::Given;
 use super::hash::{self, jittered};
 use super::level::{Level, cropped};
+use super::passages::Passages;
 use super::routes::{self, UNREACHED};
 use super::stencil::Extent;
 use super::{drainage, law};
 use crate::erosion::power::power;
 use crate::error::Result;
 use crate::grid::Window;
-use crate::hydrology::direction::NONE;
+use crate::hydrology::direction::{NONE, STEPS};
 use crate::progress::Progress;
 
 /// Number of links over which heights and areas spread, which is the maximum length of a river of the coarsest level.
@@ -27,6 +28,9 @@ const TYPICAL_AREA: f64 = 2e4;
 /// Approximate relative times for placing the nodes and for draining them in the two rounds.
 const TIMES: [f64; 3] = [3.0, 1.0, 1.0];
 
+/// Minimum height of the bed of a drawn river above the sea, in metres.
+const LEAST_BED: f32 = 0.01;
+
 /// Logarithm of uplift over erodibility where no land is near.
 const OFFSHORE: f32 = -2.25;
 
@@ -35,6 +39,8 @@ const OFFSHORE: f32 = -2.25;
 enum Base {
     None,
     Basin,
+    /// A drawn river.
+    River,
     Sea,
 }
 
@@ -55,6 +61,7 @@ struct Coarsest<'a> {
     area: Vec<f32>,
     rain: Option<Vec<f32>>,
     receiver: Vec<f32>,
+    drawn: Passages,
 }
 
 impl Continents {
@@ -109,6 +116,7 @@ impl<'a> Coarsest<'a> {
             area: vec![1.0; cells],
             rain: given.rain(&window),
             receiver: vec![f32::from(NONE); cells],
+            drawn: given.passages(&land.refinement, 0, &window),
         };
         let geography = Geography::new(land);
         progress.expect(2.0 * window.height as f64);
@@ -116,7 +124,10 @@ impl<'a> Coarsest<'a> {
             progress.step(1.0)?;
             for x in window.x..window.right() {
                 let draw = |stream| hash::unit(hash::node(land.refinement.seed, 0, x, y, stream));
-                let (east, south) = (jittered(draw(0)), jittered(draw(1)));
+                let (east, south) = match made.drawn.at(made.shore.len()) {
+                    Some(passage) => (passage.east, passage.south),
+                    None => (jittered(draw(0)), jittered(draw(1))),
+                };
                 let (metres_east, metres_south) =
                     (land.refinement.metres(0, x, east), land.refinement.metres(0, y, south));
                 made.shore.push(given.shore_or((x, y), &geography, metres_east, metres_south));
@@ -145,7 +156,47 @@ impl<'a> Coarsest<'a> {
             }
         }
         made.extent.inset = 1;
+        made.place_rivers();
         Ok(made)
+    }
+
+    /// Makes the land that drawn rivers cross bases at the heights of their beds. A river that ends on land next to the
+    /// sea flows into it; others end in an inner basin.
+    fn place_rivers(&mut self) {
+        let sea = self.base.clone();
+        let drawn = std::mem::take(&mut self.drawn);
+        for (q, passage) in drawn.left().filter(|(q, _)| sea[*q] != Base::Sea) {
+            (self.base[q], self.start[q]) = (Base::River, passage.height.max(LEAST_BED));
+        }
+        for (q, passage) in drawn.ended().filter(|(q, _)| sea[*q] != Base::Sea) {
+            let (i, j) = (q % self.extent.width, q / self.extent.width);
+            let is_inner = self.extent.columns().contains(&i) && self.extent.rows().contains(&j);
+            let ends_at_sea = is_inner && self.way_to_sea(q).is_some();
+            self.base[q] = if ends_at_sea { Base::River } else { Base::Basin };
+            self.start[q] = passage.height.max(LEAST_BED);
+        }
+        self.drawn = drawn;
+    }
+
+    /// The direction from a cell to a neighbor in the sea.
+    fn way_to_sea(&self, q: usize) -> Option<u8> {
+        let width = self.extent.width as isize;
+        [0u8, 2, 4, 6, 1, 3, 5, 7].into_iter().find(|code| {
+            let (east, south) = STEPS[usize::from(*code)];
+            self.base[q.wrapping_add_signed(south * width + east)] == Base::Sea
+        })
+    }
+
+    /// Directs drawn rivers along their lines.
+    fn lead_rivers(&mut self) {
+        let area = self.land.refinement.kilometres(0) * self.land.refinement.kilometres(0);
+        let drawn = std::mem::take(&mut self.drawn);
+        for (q, passage) in drawn.left().chain(drawn.ended()).filter(|(q, _)| self.base[*q] == Base::River) {
+            let code = if passage.code < NONE { Some(passage.code) } else { self.way_to_sea(q) };
+            self.receiver[q] = f32::from(code.unwrap_or(NONE));
+            self.area[q] = self.area[q].max((passage.area / area) as f32);
+        }
+        self.drawn = drawn;
     }
 
     /// Rise per cell of distance if the drainage area is the same everywhere.
@@ -170,19 +221,24 @@ impl<'a> Coarsest<'a> {
         let links = routes::links(self.extent, &nodes);
         let mut heights = self.start.clone();
         let mut spare = heights.clone();
+        // Cheap paths from other bases do not lower the beds of drawn rivers.
+        let pinned: Vec<usize> = (0..self.base.len()).filter(|&q| self.base[q] == Base::River).collect();
         progress.expect(2.0 * LINKS as f64);
         for _ in 0..LINKS {
             progress.step(1.0)?;
             self.extent = self.extent.shrunk(1);
             routes::relax(self.extent, &links, &mut heights, &mut spare);
+            pinned.iter().for_each(|&q| heights[q] = self.start[q]);
         }
         self.extent = self.extent.shrunk(1);
         routes::route(self.extent, &links, &heights, &self.start, &mut self.receiver);
+        self.lead_rivers();
         for _ in 0..LINKS {
             progress.step(1.0)?;
             self.extent = self.extent.shrunk(1);
             drainage::step(self.extent, self.rain.as_deref(), &self.receiver, &mut self.area, &mut spare);
         }
+        self.lead_rivers();
         Ok(heights)
     }
 
@@ -201,7 +257,10 @@ impl<'a> Coarsest<'a> {
             for i in self.extent.columns() {
                 let (q, height) = (j * width + i, heights[j * width + i]);
                 let unreached = height >= UNREACHED && self.base[q] == Base::None;
-                let suitable = self.shore[q] >= 200.0 && height >= 250.0 * relief && self.uplift[q] <= -0.9;
+                let suitable = self.base[q] == Base::None
+                    && self.shore[q] >= 200.0
+                    && height >= 250.0 * relief
+                    && self.uplift[q] <= -0.9;
                 let bits =
                     hash::node(self.land.refinement.seed, 0, self.window.x + i as i64, self.window.y + j as i64, 4);
                 let chosen = suitable && height < UNREACHED && f64::from(hash::unit(bits)) < self.land.basins;

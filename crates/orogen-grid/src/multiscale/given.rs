@@ -1,7 +1,10 @@
 //! Properties of the land that the caller provides.
 
 use super::continents::Continents;
+use super::drawn_rivers::DrawnRivers;
 use super::geography::Geography;
+use super::passages::Passages;
+use super::refinement::Refinement;
 use crate::grid::{Grid, Window};
 use std::ops::RangeInclusive;
 
@@ -25,6 +28,8 @@ pub struct Given<'a> {
     /// The land whose geography provides shores and uplift where they have no value. Without it they are taken from the
     /// next coarser level.
     pub continents: Option<&'a Continents>,
+    /// Rivers that every level leads along their lines.
+    pub rivers: Option<&'a DrawnRivers>,
 }
 
 /// Minimum of uplift over erodibility, so that its logarithm is finite.
@@ -45,6 +50,11 @@ impl Given<'_> {
     /// The factors of the rain over a window, if they are given.
     pub(super) fn rain(&self, window: &Window) -> Option<Vec<f32>> {
         self.rain.map(|_| factor(self.rain, window, RAIN))
+    }
+
+    /// The cells of a window of level `depth` that drawn rivers cross.
+    pub(super) fn passages(&self, land: &Refinement, depth: usize, window: &Window) -> Passages {
+        self.rivers.map_or_else(Passages::default, |rivers| rivers.passages(land, depth, window))
     }
 
     /// The given distance to the shore in kilometres at a sample, or that of the geography at a position in metres.

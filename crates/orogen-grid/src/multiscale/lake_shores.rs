@@ -149,7 +149,7 @@ mod tests {
         (height[lake], receiver[lake], fixed[lake]) = (100.0, 2.0, WATER);
         // The outlet keeps its height.
         fixed[lake + 9] = 2.0;
-        let carved = Carved { height, area: plane(1.0), receiver, fixed, distances: None };
+        let carved = Carved { height, area: plane(1.0), receiver, fixed, distances: None, drawn: Vec::new() };
         let land = Refinement { lakes: 1.0, ..Refinement::default() };
         let least = rims(&land, land.levels, extent, &carved);
         for (east, south) in STEPS.into_iter().filter(|step| *step != (0, 1)) {

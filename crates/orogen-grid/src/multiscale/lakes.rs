@@ -4,6 +4,7 @@
 use super::gradient_noise::{noise, smooth_step};
 use super::hash;
 use super::level::{LAKE, Level};
+use super::passages::Passages;
 use super::refinement::Refinement;
 use crate::hydrology::direction::{NONE, STEPS};
 
@@ -87,12 +88,14 @@ pub struct Part {
     pub half_width: f32,
 }
 
-/// Turns nodes of rivers into lakes, and returns these nodes. Nodes are exact except for [`REACH`] at the edge.
-pub fn begin(land: &Refinement, level: &mut Level) -> Vec<Part> {
+/// Turns nodes of rivers into lakes, and returns these nodes. Nodes are exact except for [`REACH`] at the edge. Drawn
+/// rivers do not become lakes, and lakes keep away from them.
+pub fn begin(land: &Refinement, level: &mut Level, drawn: &Passages) -> Vec<Part> {
     let found = Outlets::new(land, level);
     let steepest = (MAX_SLOPE * land.cell_of(level.depth)) as f32;
     // All lakes are found from the level as it was, so that they do not depend on each other.
-    let (heights, receivers) = (level.height.clone(), level.receiver.clone());
+    let (heights, mut receivers) = (level.height.clone(), level.receiver.clone());
+    drawn.left().for_each(|(q, _)| receivers[q] = NONE);
     let suits = |q: usize| found.is_last(level, q) && is_dry(level, &receivers, q);
     let outlets: Vec<usize> = found.candidates.iter().copied().filter(|&q| suits(q)).collect();
     let mut parts = Vec::new();

@@ -5,6 +5,7 @@ use super::children::{Children, heir};
 use super::hash;
 use super::lakes::drains;
 use super::level::Level;
+use super::passages::{Drawn, Passages};
 use super::refinement::Refinement;
 use crate::error::Result;
 use crate::hydrology::direction::{NONE, STEPS};
@@ -30,6 +31,12 @@ pub struct Child {
 }
 
 impl Child {
+    /// The child at an index of planes of children. The inverse of [`Child::index`].
+    pub fn at(index: usize, parents: usize) -> Child {
+        let (i, j) = (index % (2 * parents), index / (2 * parents));
+        Child { parent: j / 2 * parents + i / 2, corner: (i & 1) as u8 | ((j & 1) as u8) << 1 }
+    }
+
     /// The index of the child in planes of children, where `parents` is the number of parents per row.
     #[inline(always)]
     pub fn index(self, parents: usize) -> usize {
@@ -74,18 +81,27 @@ pub struct Links {
 }
 
 impl Links {
-    pub fn new(land: &Refinement, parent: &Level, children: &Children, progress: &Progress) -> Result<Links> {
+    pub fn new(
+        land: &Refinement,
+        parent: &Level,
+        children: &Children,
+        drawn: &Drawn,
+        progress: &Progress,
+    ) -> Result<Links> {
         let nothing = Link { kept: false, fed: false, exit: 0, entry: 0, around: Around::Nothing };
         let mut links = Links { list: vec![nothing; parent.window.len()], width: parent.window.width };
         links.keep(parent);
         progress.check()?;
         let wander = wander(land, children.depth);
         for q in links.kept(parent).filter(|&q| drains(parent.receiver[q])).collect::<Vec<_>>() {
-            links.cross(land, parent, children, q, wander);
+            match drawn.above.at(q).filter(|passage| passage.code == parent.receiver[q]) {
+                Some(passage) => links.follow(parent, q, passage.code),
+                None => links.cross(land, parent, children, q, wander),
+            }
         }
         progress.check()?;
         if !land.is_finest(children.depth) {
-            links.go_around(land, parent, children, wander);
+            links.go_around(land, parent, children, &drawn.below, wander);
         }
         Ok(links)
     }
@@ -170,9 +186,16 @@ impl Links {
         }
     }
 
+    /// The exit and the entry of a drawn river's link: it leaves at the node, straight into the next cell.
+    fn follow(&mut self, parent: &Level, q: usize, code: u8) {
+        let exit = heir(parent, q);
+        let across = if code & 2 == 0 { 1 } else { 2 };
+        (self.list[q].exit, self.list[q].entry) = (exit, exit ^ across);
+    }
+
     /// Leads some links around the corner that they cross, through a child of one of the two other cells that no link
     /// uses.
-    fn go_around(&mut self, land: &Refinement, parent: &Level, children: &Children, wander: f32) {
+    fn go_around(&mut self, land: &Refinement, parent: &Level, children: &Children, drawn: &Passages, wander: f32) {
         let width = self.width;
         let mut used = vec![0u8; self.list.len()];
         for q in parent.inner(1) {
@@ -195,7 +218,7 @@ impl Links {
             let mut shortest = children.distance(exit, entry, width) * (1.0 + wander * hash::unit16(bits, 0));
             for (choice, around) in [(1, Around::Side), (2, Around::End)] {
                 let Some(child) = self.passed(parent, q, around) else { continue };
-                if used[child.parent] >> child.corner & 1 == 1 {
+                if used[child.parent] >> child.corner & 1 == 1 || drawn.at(child.index(width)).is_some() {
                     continue;
                 }
                 let length = children.distance(exit, child, width) + children.distance(child, entry, width);

@@ -11,6 +11,7 @@ use super::growth::{Growth, Spacing};
 use super::law::{Law, has_floors};
 use super::level::{LAKE, Level, cropped, invalid};
 use super::links::Links;
+use super::passages::Drawn;
 use super::refinement::Refinement;
 use super::schedule::{LevelPass, Schedule};
 use super::shores::standing_water;
@@ -58,7 +59,7 @@ impl Refinement {
     /// work is cancelled.
     pub fn refine(&self, parent: &Level, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
         let depth = parent.depth + 1;
-        let given = if self.is_detail(depth) { &Given::default() } else { given };
+        let given = if self.is_detail(depth) { &Given { rivers: given.rivers, ..Given::default() } } else { given };
         self.check(depth, window)?;
         let needed = self.parent_window(depth, window);
         if !parent.window.contains(&needed) {
@@ -72,13 +73,17 @@ impl Refinement {
         if schedule.begins_details {
             detail::begin(self, &mut parent);
         }
-        let new_lakes = if schedule.lakes > 0 { lakes::begin(self, &mut parent) } else { Vec::new() };
+        let above = given.passages(self, depth - 1, &parent.window);
+        above.place(&mut parent);
+        let new_lakes = if schedule.lakes > 0 { lakes::begin(self, &mut parent, &above) } else { Vec::new() };
         mouths::lead(&mut parent, given);
         progress.expect(CARVING_WORK.into_iter().chain(schedule.passes.iter().copied().map(work)).sum());
         let mut children = Children::new(self, &parent, given, progress)?;
         lake_shores::shape(&new_lakes, &parent, &mut children);
         progress.step(CARVING_WORK[0])?;
-        let carved = self.carved(&parent, &mut children, &schedule, progress)?;
+        let drawn = Drawn { below: given.passages(self, depth, &children.window), above };
+        drawn.below.place_children(&mut children);
+        let carved = self.carved(&parent, &mut children, &drawn, &schedule, progress)?;
         let mut growing = Growing::new(self, &children, carved, given, &schedule);
         for pass in schedule.passes {
             growing.run(pass);
@@ -92,15 +97,16 @@ impl Refinement {
         &self,
         parent: &Level,
         children: &mut Children,
+        drawn: &Drawn,
         schedule: &Schedule,
         progress: &Progress,
     ) -> Result<Carved> {
-        let links = Links::new(self, parent, children, progress)?;
+        let links = Links::new(self, parent, children, drawn, progress)?;
         progress.step(CARVING_WORK[1])?;
-        let water = standing_water(parent, &links, children);
+        let water = standing_water(parent, &links, &drawn.below, children);
         progress.step(CARVING_WORK[2])?;
         children.extent = children.extent.shrunk(schedule.lakes);
-        let mut carved = carve(parent, &links, children, water);
+        let mut carved = carve(self, parent, &links, children, water, drawn);
         progress.step(CARVING_WORK[3])?;
         if schedule.is_finest {
             let extent = children.extent.shrunk(schedule.carved + schedule.straightened);
@@ -123,6 +129,8 @@ struct Growing<'a> {
     rims: Vec<f32>,
     rain: Option<Vec<f32>>,
     creep_factor: Vec<f32>,
+    /// Cells of drawn rivers, and their areas by the drawing.
+    drawn: Vec<(usize, f32)>,
 }
 
 impl<'a> Growing<'a> {
@@ -141,9 +149,11 @@ impl<'a> Growing<'a> {
             carved.free(FREE_AREA);
         }
         let edge = schedule.edge() - schedule.lakes;
-        let rims = schedule
+        let mut rims = schedule
             .rims
             .map_or(Vec::new(), |rim| lake_shores::rims(land, depth, children.extent.shrunk(edge - rim), &carved));
+        carved.hold_drawn(&mut rims, lake_shores::ANYTHING);
+        let drawn = carved.drawn_areas();
         let creep_factor = if schedule.is_finest {
             given::factor(given.creep_factor, &children.window, 0.0..=MAX_CREEP_FACTOR)
         } else if land.is_detail(depth) {
@@ -151,7 +161,7 @@ impl<'a> Growing<'a> {
         } else {
             Vec::new()
         };
-        let Carved { height, area, receiver, fixed, distances } = carved;
+        let Carved { height, area, receiver, fixed, distances, .. } = carved;
         Growing {
             land,
             depth,
@@ -162,6 +172,7 @@ impl<'a> Growing<'a> {
             rims,
             rain: given.rain(&children.window),
             creep_factor,
+            drawn,
         }
     }
 
@@ -184,10 +195,15 @@ impl<'a> Growing<'a> {
                 let slopes = Hillsides { area, receiver, fixed, factor: &self.creep_factor };
                 creep(extent, height, spare, slopes, Kept::on(self.land, self.depth));
                 lake_shores::hold(&self.rims, spare, height);
+                self.drawn.iter().for_each(|&(q, _)| height[q] = spare[q]);
             }
             LevelPass::RaiseBanks => raise_banks(extent, height, spare, area, receiver, fixed),
             LevelPass::Descend => steepest(extent, height, fixed, receiver),
-            LevelPass::RaiseAreas => drainage::raise(extent, receiver, area, spare),
+            LevelPass::RaiseAreas => {
+                // The sums of the passes reach a few cells upstream.
+                self.drawn.iter().for_each(|&(q, least)| area[q] = area[q].max(least));
+                drainage::raise(extent, receiver, area, spare);
+            }
             LevelPass::LimitAreas => drainage::limit(extent, receiver, area, spare),
         }
     }

@@ -39,6 +39,8 @@ pub struct Refinement {
     /// Whether given land has a [sea](super::level::Level::drown), whose depth determines the distance to the shore.
     /// Near steep coasts that distance changes by more than a kilometre per kilometre.
     pub sea: bool,
+    /// Whether levels lead [drawn rivers](super::given::Given::rivers), which need more of the coarser level.
+    pub drawn: bool,
 }
 
 impl Default for Refinement {
@@ -54,13 +56,14 @@ impl Default for Refinement {
             details: 0,
             lakes: 0.0,
             sea: false,
+            drawn: false,
         }
     }
 }
 
 orogen_noise::builder!(Refinement: with_seed(seed: u64), with_cell(cell: f64), with_levels(levels: usize), with_relief(relief: f64),
     with_creep(creep: f64), with_variation(variation: f64), with_jitter(jitter: f64), with_details(details: usize),
-    with_lakes(lakes: f64), with_sea(sea: bool));
+    with_lakes(lakes: f64), with_sea(sea: bool), with_drawn(drawn: bool));
 
 /// Maximum number of halvings to the finest level of valleys.
 pub const MAX_LEVELS: usize = 24;

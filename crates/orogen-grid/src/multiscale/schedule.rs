@@ -8,6 +8,9 @@ use std::iter::repeat_n;
 /// Number of cells at the edge of the children whose rivers and shores are not exact.
 const CARVED: usize = 7;
 
+/// Number of further cells that are not exact where there are drawn rivers: a tributary's area is added along them.
+const DRAWN: usize = super::carve::JOINED;
+
 /// Number of passes of heights before drainage areas change, and number of rounds of areas and heights afterwards.
 const FIRST_PASSES: usize = 3;
 const ROUNDS: usize = 5;
@@ -117,7 +120,7 @@ impl Refinement {
             is_finest,
             begins_details: self.is_finest(above),
             lakes: if lakes::begin_at(self, above) { 2 * lakes::REACH } else { 0 },
-            carved: CARVED,
+            carved: CARVED + if self.drawn { DRAWN } else { 0 },
             straightened: if is_finest { straighten::REACH } else { 0 },
             rims: (self.lakes > 0.0).then_some(lake_shores::RIM),
             passes,

@@ -4,6 +4,7 @@ use super::children::{Children, heir};
 use super::lakes::{drains, is_lake};
 use super::level::Level;
 use super::links::{Child, Links};
+use super::passages::Passages;
 use super::stencil::Extent;
 use crate::hydrology::direction::{NONE, STEPS};
 
@@ -32,8 +33,13 @@ pub struct Water {
 pub const LAND: f32 = f32::INFINITY;
 
 /// Computes the standing water of the children. Updates their distances to the shore.
-pub fn standing_water(parent: &Level, links: &Links, children: &mut Children) -> Water {
-    let held = held(parent, links);
+/// The cells of drawn rivers on land stay land.
+pub fn standing_water(parent: &Level, links: &Links, drawn: &Passages, children: &mut Children) -> Water {
+    let mut held = held(parent, links);
+    let of_parent = |q: usize| q / children.extent.width / 2 * links.width + q % children.extent.width / 2;
+    for (q, passage) in drawn.left().filter(|(q, _)| parent.receiver[of_parent(*q)] < NONE) {
+        held[q].gain(Held::River(passage.height));
+    }
     let (width, parents) = (children.extent.width, links.width);
     let mut levels = vec![LAND; held.len()];
     for (j, row) in levels.chunks_mut(width.max(1)).enumerate() {

@@ -69,6 +69,7 @@ pub fn straighten(extent: Extent, window: &Window, carved: &mut Carved) {
                 if carved.fixed[q] > FREE && donors(extent, carved, q).next().is_none() {
                     (carved.fixed[q], carved.receiver[q]) = (FREE, f32::from(NONE));
                     (carved.height[q], carved.area[q]) = (UNKNOWN, 1.0);
+                    carved.undraw(q);
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! Properties of all levels: windows agree, and water flows down.
 
 mod details;
+mod drawn;
 mod floors;
 mod lakes;
 mod rain;

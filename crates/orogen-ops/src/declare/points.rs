@@ -7,6 +7,7 @@ use super::param::Param;
 use super::point_lists::{Drawn, Form, Lists, MAX_POINTS, Reader};
 use super::spec::Shape;
 use crate::value::{Spanned, Value};
+use orogen_grid::multiscale::drawn_rivers::DrawnRivers;
 use orogen_grid::polylines::outline::Outline;
 use orogen_grid::polylines::segments::Segments;
 use orogen_io::dem::file_ref::FileRef;
@@ -25,6 +26,7 @@ pub struct PointLists<const MIN: usize> {
     lists: Arc<Lists>,
     form: Form,
     segments: Memo<Made>,
+    rivers: Memo<MadeRivers>,
 }
 
 /// Options of the conversion of points, or of a file's outlines, to segments.
@@ -49,10 +51,29 @@ struct Made {
     segments: Segments,
 }
 
+/// Drawn rivers, with the file and the options from which they were made.
+struct MadeRivers {
+    file: Option<Arc<Drawing>>,
+    smooth: bool,
+    near: f64,
+    rivers: Arc<DrawnRivers>,
+}
+
+/// Maximum distance between a curve of a file and the straight segments of a drawn river, in metres.
+const RIVER_TOLERANCE: f64 = 1.0;
+
+/// Whether two drawings are the same object, or neither is there.
+fn is_same(one: Option<&Arc<Drawing>>, other: Option<&Arc<Drawing>>) -> bool {
+    match (one, other) {
+        (Some(one), Some(other)) => Arc::ptr_eq(one, other),
+        (one, other) => one.is_none() && other.is_none(),
+    }
+}
+
 impl<const MIN: usize> From<Vec<Vec<[f64; 3]>>> for PointLists<MIN> {
     fn from(lists: Lists) -> PointLists<MIN> {
         let form = Form { is_nested: lists.len() != 1, has_heights: true };
-        PointLists { lists: Arc::new(lists), form, segments: Memo::default() }
+        PointLists { lists: Arc::new(lists), form, segments: Memo::default(), rivers: Memo::default() }
     }
 }
 
@@ -94,13 +115,7 @@ impl<const MIN: usize> PointLists<MIN> {
     /// or another file.
     pub fn with_segments<T>(&self, file: &FileRef, options: OutlineOptions, read: impl FnOnce(&Segments) -> T) -> T {
         let drawing = file.drawing();
-        let is_current = |made: &Made| {
-            let is_same_file = match (&made.file, drawing) {
-                (Some(made), Some(drawing)) => Arc::ptr_eq(made, drawing),
-                (made, drawing) => made.is_none() && drawing.is_none(),
-            };
-            is_same_file && made.options == options
-        };
+        let is_current = |made: &Made| is_same(made.file.as_ref(), drawing) && made.options == options;
         let make = || {
             let own = self.lists.iter().map(|points| Outline::of_points(points));
             let read = drawing.iter().flat_map(|drawing| &drawing.outlines);
@@ -114,6 +129,27 @@ impl<const MIN: usize> PointLists<MIN> {
         };
         read(&self.segments.get_or_make(is_current, make).segments)
     }
+
+    /// The rivers along the points and along the file's lines, which are smooth curves if `smooth` is set. A line that ends within `near` metres of another is its
+    /// tributary. They are made once, and made again only for another file.
+    pub fn drawn_rivers(&self, file: &FileRef, smooth: bool, near: f64) -> Arc<DrawnRivers> {
+        let drawing = file.drawing();
+        let is_current =
+            |made: &MadeRivers| is_same(made.file.as_ref(), drawing) && made.smooth == smooth && made.near == near;
+        let make = || {
+            let own = self.lists.iter().map(|points| Outline::of_points(points));
+            let read = drawing.iter().flat_map(|drawing| drawing.outlines.iter().cloned());
+            let lines = own.chain(read).map(|outline| {
+                let outline = if smooth { outline.smoothed() } else { outline };
+                let mut points = vec![outline.start];
+                outline.flatten(RIVER_TOLERANCE, |point| points.push(point));
+                points
+            });
+            let lines: Vec<Vec<[f64; 3]>> = lines.collect();
+            MadeRivers { file: drawing.cloned(), smooth, near, rivers: Arc::new(DrawnRivers::new(&lines, near)) }
+        };
+        Arc::clone(&self.rivers.get_or_make(is_current, make).rivers)
+    }
 }
 
 impl<const MIN: usize> Param for PointLists<MIN> {
@@ -123,7 +159,7 @@ impl<const MIN: usize> Param for PointLists<MIN> {
         let anywhere = [f64::NEG_INFINITY, f64::INFINITY];
         let reader = Reader { name: "", number: String::new(), drawn: Drawn::of_at_least(MIN), range: anywhere };
         let (lists, form) = reader.read(value).ok()?;
-        Some(PointLists { lists: Arc::new(lists), form, segments: Memo::default() })
+        Some(PointLists { lists: Arc::new(lists), form, segments: Memo::default(), rivers: Memo::default() })
     }
 
     fn write(&self) -> Value {

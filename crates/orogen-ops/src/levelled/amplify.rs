@@ -2,6 +2,8 @@
 
 use super::drained::Drained;
 use super::drained_op::drained_op;
+use orogen_grid::multiscale::drawn_rivers::DrawnRivers;
+use std::sync::Arc;
 
 drained_op! {
     /// Coarse land refined level by level: its rivers keep their course, area and fall, and ever smaller valleys and
@@ -80,5 +82,10 @@ impl Amplify {
     /// The land with what only this op has.
     fn completed(&self, land: Drained) -> Drained {
         Drained { refinement: land.refinement.with_jitter(self.jitter).with_sea(self.sea), ..land }
+    }
+
+    /// The rivers are those of the source.
+    fn drawn_rivers(&self) -> Option<Arc<DrawnRivers>> {
+        None
     }
 }

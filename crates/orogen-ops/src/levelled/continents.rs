@@ -2,7 +2,10 @@
 
 use super::drained::Drained;
 use super::drained_op::drained_op;
+use crate::declare::{LineFile, LinePoints};
 use orogen_grid::multiscale::continents::Continents as Land;
+use orogen_grid::multiscale::drawn_rivers::DrawnRivers;
+use std::sync::Arc;
 
 drained_op! {
     /// Eroded land without bounds: continents with ranges, plains and plateaus, coasts, inland basins with lakes, and
@@ -71,6 +74,17 @@ drained_op! {
         /// wide; there are few in plains. They begin at cells of 5 km to 400 m: levels that begin with a smaller cell
         /// have none.
         lakes: f64 = 0.0, range 0.0 to 1.0;
+        /// Rivers drawn on the map, each a line from its source to its mouth, as in `path`. Every level leads them
+        /// through exactly the cells that their lines cross. They end in the sea or on another river. A third number of
+        /// the points is the height of the bed, which should fall; without it rivers rise from their mouths by the law
+        /// of slopes, with uplift over erodibility of 0.4. Their drainage area is that of their length (Hack 1957) and
+        /// of their tributaries, or of the land, if it is larger.
+        rivers: LinePoints = LinePoints::default(), unit "m", range -1e9 to 1e9;
+        /// Path of an SVG or GeoJSON file with further rivers, as `file` of `path`, in metres of the world.
+        rivers_file: LineFile = LineFile::default();
+        /// Whether drawn rivers are smooth curves through their points. Lines of a file that have curves stay as they
+        /// are.
+        smooth: bool = false;
     }
     layers {
         /// Height of the node in the cell south-east of the sample; the water level of water. It falls from each node
@@ -93,6 +107,13 @@ impl Continents {
     /// The land with what only this op has.
     fn completed(&self, land: Drained) -> Drained {
         let continents = Land::default().with_land(self.land).with_size(self.size).with_basins(self.basins);
-        Drained { continents: Some(continents), ..land }
+        let refinement = land.refinement.with_drawn(!(self.rivers.is_empty() && self.rivers_file.0.is_empty()));
+        Drained { continents: Some(continents), refinement, ..land }
+    }
+
+    /// The drawn rivers.
+    fn drawn_rivers(&self) -> Option<Arc<DrawnRivers>> {
+        let is_drawn = !(self.rivers.is_empty() && self.rivers_file.0.is_empty());
+        is_drawn.then(|| self.rivers.drawn_rivers(&self.rivers_file.0, self.smooth, self.cell))
     }
 }

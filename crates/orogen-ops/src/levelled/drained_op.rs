@@ -11,9 +11,11 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::multiscale::coarse::{Coarse, REACH};
 use orogen_grid::multiscale::continents::Continents;
+use orogen_grid::multiscale::drawn_rivers::DrawnRivers;
 use orogen_grid::multiscale::given::Given;
 use orogen_grid::multiscale::level::Level;
 use orogen_grid::multiscale::refinement::Refinement;
+use std::sync::Arc;
 
 /// Approximate time for a sample of a coarsest level that is given by inputs, in nanoseconds.
 const COST_OF_GIVEN: f64 = 50.0;
@@ -23,7 +25,7 @@ const COST_OF_CONTINENTS: f64 = 2e4;
 const COST: f64 = 300.0;
 
 /// `op!` for drained land: the common layers of such ops come before the declared ones. The op's method `completed`
-/// sets parameters of the land that not all of these ops have.
+/// sets parameters of the land that not all of these ops have, and its method `drawn_rivers` returns drawn rivers.
 macro_rules! drained_op {
     (
         $(#[doc = $doc:literal])+
@@ -83,6 +85,10 @@ macro_rules! drained_op {
                 let land = $crate::levelled::drained::Drained { refinement, continents: None, stream, runoff };
                 self.completed(land)
             }
+
+            fn rivers(&self) -> Option<std::sync::Arc<orogen_grid::multiscale::drawn_rivers::DrawnRivers>> {
+                self.drawn_rivers()
+            }
         }
     };
 }
@@ -92,6 +98,9 @@ pub(super) use drained_op;
 pub trait DrainedOp: Declared + Send + Sync {
     /// The land with the op's parameters and the seed of the node.
     fn drained(&self) -> Drained;
+
+    /// The rivers that every level leads along their lines.
+    fn rivers(&self) -> Option<Arc<DrawnRivers>>;
 }
 
 /// The inputs of all such ops; inputs that an op does not declare are `None`.
@@ -104,6 +113,7 @@ fn given<'a>(inputs: &GridInputs<'a>) -> Given<'a> {
         floor_factor: inputs.get("floor_factor"),
         rain: inputs.get("rain"),
         continents: None,
+        rivers: None,
     }
 }
 
@@ -142,7 +152,8 @@ impl<T: DrainedOp> Levelled for T {
 
     fn coarsest(&self, inputs: &GridInputs, window: &Window, context: &Context) -> Result<Vec<Grid>> {
         let Drained { refinement, continents, .. } = self.drained().seeded(context.world_params);
-        let given = given(inputs);
+        let rivers = self.rivers();
+        let given = Given { rivers: rivers.as_deref(), ..given(inputs) };
         if let Some(continents) = continents {
             return Ok(continents.coarsest(&given, window, context.progress)?.into_planes());
         }
@@ -170,7 +181,9 @@ impl<T: DrainedOp> Levelled for T {
         let moved = |input: &Grid| Grid::from_data(land.nodes_at(level, input.window()), input.data().to_vec());
         let moved: Vec<Option<Grid>> = inputs.all().iter().map(|input| moved((*input)?)).collect();
         let moved: Vec<Option<&Grid>> = moved.iter().map(Option::as_ref).collect();
-        let given = Given { continents: land.continents.as_ref(), ..given(&inputs.with(&moved)) };
+        let rivers = self.rivers();
+        let given =
+            Given { continents: land.continents.as_ref(), rivers: rivers.as_deref(), ..given(&inputs.with(&moved)) };
         let mut made = land.refinement.refine(&above, &given, &nodes, context.progress)?;
         made.window = *window;
         Ok(made.into_planes())
@@ -200,6 +213,9 @@ impl<T: DrainedOp> Levelled for T {
 
     fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
         let land = self.drained().seeded(world_params);
+        if land.refinement.drawn {
+            return Lowering::Processor("drawn rivers are led along their lines in f64");
+        }
         if land.refinement.has_geography(level) && land.continents.is_some() {
             return Lowering::Processor("continents and ranges are placed in f64");
         }
@@ -227,7 +243,8 @@ impl<T: DrainedOp> Levelled for T {
         let samples = window.grown(halo + 1);
         // Inputs are copied to the windows of the nodes.
         let bytes = Refinement::bytes_per_sample().saturating_add(4 * self.spec().inputs.len() as u64);
-        bytes.saturating_mul(samples.width as u64).saturating_mul(samples.height as u64)
+        let rivers = self.rivers().map_or(0, |rivers| rivers.memory());
+        bytes.saturating_mul(samples.width as u64).saturating_mul(samples.height as u64).saturating_add(rivers)
     }
 }
 
