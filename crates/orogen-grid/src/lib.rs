@@ -91,6 +91,8 @@ pub mod progress;
 pub mod random;
 pub mod resample;
 #[doc(hidden)]
+pub mod scattered;
+#[doc(hidden)]
 pub mod strata;
 #[doc(hidden)]
 pub mod surface_nets;

@@ -13,6 +13,8 @@
 //! is therefore compiled without optimization, which reduces its compile time to an eighth.
 #![forbid(unsafe_code)]
 
+#[doc(hidden)]
+pub mod author_map;
 pub mod builder;
 pub mod export;
 pub mod fit;

@@ -138,7 +138,7 @@ pub use orogen_grid as grid;
 #[doc(inline)]
 pub use orogen_io as io;
 #[doc(hidden)]
-pub use orogen_jobs::graph_layout;
+pub use orogen_jobs::{author_map, graph_layout};
 #[doc(inline)]
 pub use orogen_jobs::{builder, export, fit, jobs, locate, options, tilemap};
 #[doc(inline)]

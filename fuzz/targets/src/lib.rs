@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a target that fails panics")]
 
+pub mod author_map;
 pub mod dem;
 pub mod drawing;
 mod edits;
@@ -35,6 +36,7 @@ pub type Target = fn(&[u8]);
 
 /// All targets by their names, which are those of their folders in `fuzz/corpus`.
 pub const TARGETS: &[(&str, Target)] = &[
+    ("author_map", author_map::run),
     ("dem", dem::run),
     ("drawing", drawing::run),
     ("journal", journal::run),

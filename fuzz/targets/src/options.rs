@@ -34,6 +34,7 @@ pub fn run(input: &[u8]) {
     assert!(!number::seed(text).is_ok_and(|seed| seed > i64::MAX as u64), "{text}");
     assert!(!number::cell(text).is_ok_and(|number| !number.is_finite() || number <= 0.0), "{text}");
     assert!(!number::finite(text).is_ok_and(|number| !number.is_finite()), "{text}");
+    assert!(!number::kilometres(text).is_ok_and(|number| !(1.0..=40_000.0).contains(&number)), "{text}");
     assert!(!text.parse::<Bytes>().is_ok_and(|bytes| bytes.0 == 0), "{text}");
     if let Ok(paper) = text.parse::<paper::Paper>() {
         let [width, height] = paper.sides(true);

@@ -1,14 +1,18 @@
 //! `orogen new`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use orogen::author_map::{self, AuthorMapJob};
 use orogen::io::file::{self, Existing, OutputPolicy};
 use orogen::recipe::presets;
-use orogen::{Error, ErrorKind};
+use orogen::{Error, ErrorKind, Options};
 
+use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::sink::is_stdout;
-use crate::{say, source};
+use crate::values::bytes::Bytes;
+use crate::values::number::{kilometres, seed};
+use crate::{interrupt, memory, say, source};
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
@@ -16,12 +20,28 @@ pub struct Args {
     /// Name of the new recipe: NAME.toml is written; - is standard output
     name: PathBuf,
     /// The preset to start from
-    #[arg(long, value_name = "PRESET", default_value = presets::DEFAULT)]
+    #[arg(long, value_name = "PRESET", default_value = presets::DEFAULT, conflicts_with = "map")]
     preset: String,
+    /// Make the world of a map that Azgaar's Fantasy Map Generator has exported to JSON (`full`): its coast, heights,
+    /// rain, rivers, lakes and names are written to the folder NAME
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
+    /// Width of the map in kilometres [default: by the scale of the map]
+    #[arg(long, value_name = "KM", requires = "map", value_parser = kilometres, allow_negative_numbers = true)]
+    width: Option<f64>,
+    /// Seed of the world of a map [default: the seed of the map]
+    #[arg(long, value_name = "N", requires = "map", value_parser = seed, allow_negative_numbers = true)]
+    seed: Option<u64>,
+    /// Memory limit of the program, such as 512MiB or 2GiB [default: half of the free memory]
+    #[arg(long, value_name = "BYTES", requires = "map")]
+    memory: Option<Bytes>,
 }
 
 /// Writes the recipe, never over another file.
 pub fn run(args: &Args) -> Result<(), Failure> {
+    if let Some(map) = &args.map {
+        return author_map(args, map);
+    }
     let preset = source::preset(&args.preset)?;
     if is_stdout(&args.name) {
         return say::out(preset.text);
@@ -39,6 +59,36 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         path.display(),
         preset.name,
         say::word(&path)
+    ))
+}
+
+/// Makes a world of a map, and writes its recipe and the files that it reads.
+fn author_map(args: &Args, map: &Path) -> Result<(), Failure> {
+    if is_stdout(&args.name) {
+        let why = "the world of a map has several files; give a name in place of `-`";
+        return Err(Failure::Usage(why.into()));
+    }
+    let path = path(args)?;
+    let folder = path.with_extension("");
+    author_map::check_new(&path, &folder)?;
+    let budget = memory::budget(args.memory, memory::cores());
+    let limits = Options { threads: Some(memory::cores()), memory: budget, ..Options::default() };
+    let job = AuthorMapJob::new().with_width(args.width).with_seed(args.seed);
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    let (bar, progress) = Bar::new(false);
+    let world = job
+        .run(map, &name, &limits, &progress)
+        .map_err(|error| interrupt::explain(error.into(), "no files were written"))?;
+    drop(bar);
+    world.write(&path, &folder, &OutputPolicy::new(Existing::Keep))?;
+    world.map.notes.iter().for_each(|note| say::error(&format!("note: {}: {note}", map.display())));
+    let (word, places) = (say::word(&path), say::word(&folder.join("places.csv")));
+    say::out(&format!(
+        "wrote {} and the files in {}\n{}\nmake it:             orogen generate {word}\n\
+         draw a map:          orogen map {word} --names {places} -o map.png\n",
+        path.display(),
+        folder.display(),
+        world.words(),
     ))
 }
 

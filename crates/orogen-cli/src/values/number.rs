@@ -19,6 +19,12 @@ pub fn cell(text: &str) -> Result<f64, String> {
     check_cell(cell).map(|()| cell).map_err(|error| error.to_string())
 }
 
+/// `--width`: width of a map, in kilometres.
+pub fn kilometres(text: &str) -> Result<f64, String> {
+    let width = text.trim().parse().ok().filter(|width: &f64| (1.0..=40_000.0).contains(width));
+    width.ok_or_else(|| "the width of a map must be a number of kilometres from 1 to 40000, such as 1200".into())
+}
+
 /// `--dpi`: pixels per inch of a page.
 pub fn dpi() -> impl TypedValueParser<Value = u16> {
     clap::value_parser!(u16).range(20..=1200)

@@ -10,6 +10,7 @@ mod failure;
 #[path = "../../src/values/mod.rs"]
 mod values;
 
+mod author_maps;
 mod bad_places;
 mod bad_recipes;
 mod blocks;

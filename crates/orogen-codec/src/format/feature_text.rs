@@ -1,5 +1,6 @@
 //! Features as text: members of a GeoJSON collection, and lines of a CSV file.
 
+use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -96,10 +97,7 @@ pub fn write_lines(out: &mut dyn Write, features: &[Feature], decimals: usize) -
                 Value::Integer(number) => write!(text, "{number}"),
                 Value::Real(number) if number.is_finite() => write!(text, "{number}"),
                 Value::Boolean(is) => write!(text, "{is}"),
-                Value::Text(word) if word.contains([',', '"', '\n', '\r']) => {
-                    write!(text, "\"{}\"", word.replace('"', "\"\""))
-                }
-                Value::Text(word) => write!(text, "{word}"),
+                Value::Text(word) => write!(text, "{}", quoted(word)),
                 Value::Null | Value::Real(_) => Ok(()),
             };
         }
@@ -107,4 +105,13 @@ pub fn write_lines(out: &mut dyn Write, features: &[Feature], decimals: usize) -
         out.write_all(text.as_bytes())?;
     }
     Ok(true)
+}
+
+/// A text as a value of a CSV file (RFC 4180), in quotes if it needs them.
+#[must_use]
+pub fn quoted(word: &str) -> Cow<'_, str> {
+    match word.contains([',', '"', '\n', '\r']) {
+        true => Cow::Owned(format!("\"{}\"", word.replace('"', "\"\""))),
+        false => Cow::Borrowed(word),
+    }
 }

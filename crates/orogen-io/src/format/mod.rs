@@ -25,6 +25,8 @@ pub(crate) mod exr_reader;
 pub mod features;
 pub mod fgb;
 #[doc(hidden)]
+pub mod fmg;
+#[doc(hidden)]
 pub mod foreign;
 pub mod geojson;
 pub mod geotiff;

@@ -25,6 +25,7 @@ macro_rules! replays {
 }
 
 replays! {
+    author_map: 4000,
     dem: 60000,
     drawing: 100000,
     journal: 2000,
