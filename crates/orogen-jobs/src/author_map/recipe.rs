@@ -173,13 +173,19 @@ at = {at}
 
 [nodes.uplift]
 op = "expr"
-expr = "clamp(0.001 * max(heights, 10) * uplift_factor, 0.003, 30)"
+expr = "clamp(0.001 * max(heights, 10) * uplift_factor, 0.003, 8)"
+
+# Hillsides are not steeper than 45 degrees however fast the land rises: mountains that are steeper on the map stay lower.
+[nodes.stability]
+op = "expr"
+expr = "min(1, (2 / uplift)^0.3)"
 {rain_nodes}
 # {lake_count}
 [nodes.land]
 op = "continents"
 shore = "shore"
 uplift = "uplift"
+stability_factor = "stability"
 {rain_key}cell = {cell}
 halvings = {halvings}
 details = {details}

@@ -1,5 +1,7 @@
 //! Tests on the small map.
 
+use std::sync::OnceLock;
+
 use super::{AuthorMapJob, AuthorWorld};
 use orogen_engine::session;
 use orogen_engine::world::World;
@@ -16,6 +18,12 @@ use orogen_io::test_folder::TestFolder;
 fn made(width: f64) -> AuthorWorld {
     let map = FmgMap::parse(&samples::map().to_string(), Some(width)).unwrap();
     AuthorMapJob::new().run_on(map, "mine", &session::Options::default(), &Progress::none()).unwrap()
+}
+
+/// The world of the small map with its own width, made once.
+fn shared() -> &'static AuthorWorld {
+    static WORLD: OnceLock<AuthorWorld> = OnceLock::new();
+    WORLD.get_or_init(|| made(410.0))
 }
 
 /// The world in a folder, with a detail of the coast.
@@ -38,7 +46,7 @@ fn shore(map: &FmgMap) -> Segments {
 
 #[test]
 fn heights_follow_the_map() {
-    let world = made(410.0);
+    let world = shared();
     assert!(world.correlation() > 0.9, "{}", world.words());
     assert!((0.8..1.25).contains(&world.calibration.ratio), "{}", world.words());
 }
@@ -62,14 +70,16 @@ fn the_coast_is_the_drawn_one_within_a_cell() {
                 Window::new(index(side) as usize, index(side) as usize, cell).at(index(x), index(y))
             }
         };
-        let heights = opened.window("height", &window).unwrap();
+        let heights = opened.window("surface", &window).unwrap();
+        // Detail levels have the shore of the finest level of valleys.
+        let within = 1.5 * cell.max(opened.recipe().world.cell);
         let (mut wrong, mut land) = (0, 0);
         for j in 0..window.height {
             for i in 0..window.width {
                 let at = [window.east(i), window.south(j)];
                 let is_land = heights[(i, j)] > 0.0;
                 land += usize::from(is_land);
-                let near = shore.nearest(at, f64::INFINITY).unwrap().distance() <= 1.5 * cell;
+                let near = shore.nearest(at, f64::INFINITY).unwrap().distance() <= within;
                 wrong += usize::from(!near && is_land != shore.is_inside(at));
             }
         }
@@ -81,7 +91,7 @@ fn the_coast_is_the_drawn_one_within_a_cell() {
 
 #[test]
 fn files_are_written_together_and_never_over_others() {
-    let world = made(410.0);
+    let world = shared();
     let folder = TestFolder::new("author-files").unwrap();
     let (recipe, inner) = (folder.join("mine.toml"), folder.join("mine"));
     let policy = OutputPolicy::new(Existing::Keep);
@@ -107,6 +117,6 @@ fn files_are_written_together_and_never_over_others() {
 
 #[test]
 fn the_same_map_makes_the_same_world() {
-    let [one, other] = [made(100.0), made(100.0)];
+    let (one, other) = (shared(), made(410.0));
     assert_eq!((one.recipe(), &one.rasters.uplift), (other.recipe(), &other.rasters.uplift));
 }

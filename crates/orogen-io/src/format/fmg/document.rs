@@ -10,7 +10,7 @@ use super::table::{Allowance, Column, RowSeed, Table, TableSeed, read_column};
 const INFO: &[Column] = &[("width", Number), ("height", Number), ("mapName", Text), ("seed", Text)];
 const SETTINGS: &[Column] =
     &[("distanceScale", Number), ("distanceUnit", Text), ("heightExponent", Number), ("mapName", Text)];
-const CELLS: &[Column] = &[("p", List), ("v", List), ("h", Number), ("f", Number), ("prec", Number)];
+const CELLS: &[Column] = &[("p", List), ("v", List), ("h", Number), ("f", Number), ("g", Number), ("prec", Number)];
 const VERTICES: &[Column] = &[("p", List)];
 const FEATURES: &[Column] = &[("i", Number), ("type", Text), ("name", Text), ("height", Number)];
 const RIVERS: &[Column] = &[

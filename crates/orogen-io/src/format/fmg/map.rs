@@ -416,7 +416,12 @@ fn sites(document: &Document, around: &Surroundings, heights: &[f64], exponent: 
     let mut sites: Vec<Site> = heights.iter().enumerate().map(site).collect();
     if has_grid {
         sites.retain(|site| site.water != Some(Water::Sea));
-        for row in 0..grid.rows() {
+        let mut is_lake = vec![false; grid.rows()];
+        for (cell, _) in around.water.iter().enumerate().filter(|(_, water)| **water == Some(Water::Lake)) {
+            let of = document.pack.cells.number("g", cell).and_then(|of| is_lake.get_mut(of as usize));
+            of.into_iter().for_each(|is_lake| *is_lake = true);
+        }
+        for row in (0..grid.rows()).filter(|&row| !is_lake[row]) {
             let (Some(h), Some([x, y])) = (grid.number("h", row), points.position("points", row)) else { continue };
             let at = [x * around.metres_per_pixel, y * around.metres_per_pixel];
             if h < LAND && around.limited(at) == at {

@@ -117,7 +117,7 @@ impl Table {
         }
     }
 
-    /// Makes all columns as long as the longest.
+    /// Makes all columns as long as the longest, with missing values.
     fn pad(&mut self, rows: usize) {
         self.rows = self.rows.max(rows);
         self.data.iter_mut().for_each(|data| data.pad(self.rows));
@@ -365,7 +365,8 @@ impl<'de> Visitor<'de> for ColumnSeed<'_> {
             table.set(column, row, item);
             row += 1;
         }
-        table.pad(row);
+        // Other columns may still come.
+        table.rows = table.rows.max(row);
         Ok(())
     }
 }
