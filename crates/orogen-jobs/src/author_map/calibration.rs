@@ -48,13 +48,13 @@ const AROUND: f64 = 0.5;
 const SAMPLES: f64 = 3.0;
 
 /// Samples per distance between cells where finer levels are compared with coarser ones, at least.
-const FINE_SAMPLES: f64 = 150.0;
+const FINE_SAMPLES: f64 = 100.0;
 
 /// Number of cells of the map around which levels are compared.
-const WINDOWS: usize = 24;
+const WINDOWS: usize = 16;
 
 /// The work for it, relative to that of a correction.
-const WINDOWS_WORK: f64 = 6.0;
+const WINDOWS_WORK: f64 = 5.0;
 
 /// Maximum logarithm of the change from one level to others.
 const MAX_TREND: f64 = 0.8;

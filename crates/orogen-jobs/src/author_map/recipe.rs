@@ -30,6 +30,10 @@ const WANDER: f64 = 0.7;
 /// Wavelength of the detail of the coast, in distances between the cells of the map.
 const WAVELENGTH: f64 = 2.0;
 
+/// Heights above the first share of the highest cell are compressed by a logarithm; the second share is the height above
+/// it at which they rise half as fast.
+const COMPRESSED: [f64; 2] = [0.8, 0.4];
+
 /// The numbers of a recipe.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Template {
@@ -95,6 +99,10 @@ impl Template {
         let wavelength = decimal(rounded(wavelength));
         let at = |index: i64| decimal(index as f64 * window.cell);
         let at = format!("[{}, {}]", at(window.x), at(window.y));
+        let lands = map.sites.iter().filter(|site| site.water.is_none());
+        let highest = lands.map(|site| site.height).fold(10.0, f64::max);
+        let [limit, rest] = COMPRESSED.map(|share| decimal(rounded(share * highest)));
+        let highest = decimal(highest.round());
         let (coast, heights, uplift) = (file(files::COAST), file(files::HEIGHTS), file(files::UPLIFT));
         let (lakes, rivers, places) = (file(files::LAKES), file(files::RIVERS), file(files::PLACES));
         let lake_count = match map.lakes.len() {
@@ -193,10 +201,20 @@ basins = 0.0
 lakes = 0.3
 # The drawn rivers are in {rivers}, the lakes in {lakes}.
 
+# The highest cell of the map has {highest} m. Summits above {limit} m are compressed, so that they are not twice as high.
+[nodes.height]
+op = "expr"
+expr = "land - max(land - {limit}, 0) + {rest} * log(1 + max(land - {limit}, 0) / {rest})"
+
+[nodes.surface]
+op = "expr"
+expr = "water - max(water - {limit}, 0) + {rest} * log(1 + max(water - {limit}, 0) / {rest})"
+water = "land.surface"
+
 [outputs]
-height = "land"
+height = "height"
 lakes = "land.lake"
-surface = "land.surface"
+surface = "surface"
 flow = "land.flow"
 receiver = "land.receiver"
 river_width = "land.width"
