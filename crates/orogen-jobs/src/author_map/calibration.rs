@@ -18,6 +18,7 @@ use orogen_grid::scattered::{Scattered, means_above, multiplied};
 use orogen_io::dem::PreparedDem;
 use orogen_io::format::dem::Dem;
 use orogen_io::format::drawing::{Drawing, Format};
+use orogen_io::format::features::FeatureLayer;
 use orogen_io::format::fmg::FmgMap;
 use orogen_io::format::outlines::DrawingKind;
 
@@ -86,7 +87,8 @@ pub fn calibrated(
     let recipe = draft(map, rasters, template)?;
     let limits = session::Options { store: None, ..limits.clone() };
     let coarse = level(template, map.size, map.spacing / SAMPLES, MAX_SAMPLES);
-    let mut work = Work { map, at, wanted, recipe, limits, coarse, uplift: rasters.uplift.clone(), trend: Trend::default() };
+    let mut work =
+        Work { map, at, wanted, recipe, limits, coarse, uplift: rasters.uplift.clone(), trend: Trend::default() };
     progress.expect((2 * CORRECTIONS + 2) as f64 + WINDOWS_WORK);
     work.correct(progress)?;
     let fine = level(template, map.size, map.spacing / FINE_SAMPLES, f64::INFINITY);
@@ -212,17 +214,10 @@ fn heights(world: &World, window: &Window, progress: &Progress) -> Result<Grid> 
 /// The recipe with its files in memory, without detail of the coast: the heights are those of the drawn land.
 fn draft(map: &FmgMap, rasters: &Rasters, template: &Template) -> Result<Recipe> {
     let mut recipe = Recipe::parse_with(&template.text(map), "the new recipe", &[(super::recipe::DETAIL.into(), 0.0)])?;
-    let coast = layers::coast(map);
-    let mut text = Vec::new();
-    files::write_geojson(&mut text, &coast).map_err(|cause| internal(&cause.to_string()))?;
-    let text = String::from_utf8(text).map_err(|cause| internal(&cause.to_string()))?;
-    let drawing = Drawing::parse(&text, Format::GeoJson, DrawingKind::Areas).map_err(|why| internal(&why))?;
-    let drawing = Arc::new(drawing);
-    recipe.change(|node| {
-        for file in node.files().into_iter().filter(|file| file.path().ends_with(files::COAST)) {
-            file.hold_drawing(Arc::clone(&drawing));
-        }
-    });
+    draw(&mut recipe, files::COAST, &layers::coast(map), DrawingKind::Areas)?;
+    if !map.rivers.is_empty() {
+        draw(&mut recipe, files::RIVERS, &layers::rivers(map, &rasters.heights), DrawingKind::Lines)?;
+    }
     hold(&mut recipe, files::HEIGHTS, &rasters.heights)?;
     if let Some(rain) = &rasters.rain {
         hold(&mut recipe, files::RAIN, rain)?;
@@ -230,10 +225,25 @@ fn draft(map: &FmgMap, rasters: &Rasters, template: &Template) -> Result<Recipe>
     Ok(recipe)
 }
 
+/// Puts features in place of a file.
+fn draw(recipe: &mut Recipe, name: &str, layer: &FeatureLayer, kind: DrawingKind) -> Result<()> {
+    let mut text = Vec::new();
+    files::write_geojson(&mut text, layer).map_err(|cause| internal(&cause.to_string()))?;
+    let text = String::from_utf8(text).map_err(|cause| internal(&cause.to_string()))?;
+    let drawing = Arc::new(Drawing::parse(&text, Format::GeoJson, kind).map_err(|why| internal(&why))?);
+    recipe.change(|node| {
+        for file in node.files().into_iter().filter(|file| file.path().ends_with(name)) {
+            file.hold_drawing(Arc::clone(&drawing));
+        }
+    });
+    Ok(())
+}
+
 /// Puts a raster in place of a file.
 fn hold(recipe: &mut Recipe, name: &str, grid: &Grid) -> Result<()> {
     let window = grid.window();
-    let dem = Dem::new([window.width, window.height], grid.data().to_vec(), None).map_err(|why| internal(&why.to_string()))?;
+    let dem = Dem::new([window.width, window.height], grid.data().to_vec(), None)
+        .map_err(|why| internal(&why.to_string()))?;
     let ground = PreparedDem::of(dem, Some(window.cell), u64::MAX).map_err(|why| internal(&why))?;
     let ground = Arc::new(ground);
     recipe.change(|node| {

@@ -55,7 +55,7 @@ pub fn write(world: &AuthorWorld, recipe: &Path, folder: &Path, policy: &OutputP
     let inner = |name: &str| folder.join(name);
     let mut files = vec![
         (inner(COAST), Content::Features(layers::coast(map))),
-        (inner(RIVERS), Content::Features(layers::rivers(map))),
+        (inner(RIVERS), Content::Features(layers::rivers(map, &rasters.heights))),
         (inner(LAKES), Content::Features(layers::lakes(map))),
         (inner(PLACES), Content::Names),
         (inner(HEIGHTS), Content::Raster(&rasters.heights, "m")),

@@ -2,9 +2,12 @@
 
 use std::borrow::Cow;
 
+use orogen_grid::grid::Grid;
 use orogen_io::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Ring, Value};
 use orogen_io::format::fmg::{FmgMap, Lake, River};
 use orogen_io::format::points::NamedPoint;
+
+use super::courses::courses;
 
 const NAME: Field = Field { name: "name", kind: FieldType::Text, about: "name" };
 
@@ -20,7 +23,8 @@ const RIVERS: &[Field] = &[
 
 /// The polygons of the land, with the lakes.
 pub fn coast(map: &FmgMap) -> FeatureLayer {
-    let polygon = |part: &Vec<Ring>| Feature { geometry: Geometry::MultiPolygon(vec![part.clone()]), values: Vec::new() };
+    let polygon =
+        |part: &Vec<Ring>| Feature { geometry: Geometry::MultiPolygon(vec![part.clone()]), values: Vec::new() };
     placed(FeatureLayer {
         name: "coast",
         about: "land, with its lakes",
@@ -45,10 +49,10 @@ pub fn lakes(map: &FmgMap) -> FeatureLayer {
     })
 }
 
-/// The rivers from source to mouth, main rivers before their tributaries.
-pub fn rivers(map: &FmgMap) -> FeatureLayer {
-    let river = |river: &River| Feature {
-        geometry: Geometry::Line(river.points.iter().map(|at| [at[0], at[1], 0.0]).collect()),
+/// The rivers along their courses from source to mouth, main rivers before their tributaries.
+pub fn rivers(map: &FmgMap, heights: &Grid) -> FeatureLayer {
+    let river = |(river, points): (&River, Vec<[f64; 3]>)| Feature {
+        geometry: Geometry::Line(points),
         values: vec![
             text(&river.name),
             river.width.map_or(Value::Null, rounded),
@@ -58,10 +62,10 @@ pub fn rivers(map: &FmgMap) -> FeatureLayer {
     };
     placed(FeatureLayer {
         name: "rivers",
-        about: "rivers from source to mouth",
-        geometry: GeometryType::Line,
+        about: "rivers from source to mouth, with the height of the bed",
+        geometry: GeometryType::LineZ,
         fields: RIVERS,
-        features: map.rivers.iter().map(river).collect(),
+        features: map.rivers.iter().zip(courses(map, heights)).map(river).collect(),
     })
 }
 

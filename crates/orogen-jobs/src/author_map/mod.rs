@@ -2,6 +2,7 @@
 //! Fantasy Map Generator.
 
 mod calibration;
+mod courses;
 mod files;
 mod job;
 mod layers;

@@ -1,9 +1,9 @@
 //! The text of the recipe.
 
+use orogen_engine::value::toml_string;
 use orogen_grid::grid::Window;
 use orogen_grid::words::count;
 use orogen_io::format::fmg::{FmgMap, Water};
-use orogen_engine::value::toml_string;
 
 use super::files;
 use super::rasters::Rasters;
@@ -104,7 +104,13 @@ impl Template {
         let [limit, rest] = COMPRESSED.map(|share| decimal(rounded(share * highest)));
         let highest = decimal(highest.round());
         let (coast, heights, uplift) = (file(files::COAST), file(files::HEIGHTS), file(files::UPLIFT));
-        let (lakes, rivers, places) = (file(files::LAKES), file(files::RIVERS), file(files::PLACES));
+        let (rivers, places) = (file(files::RIVERS), file(files::PLACES));
+        let river_keys = match map.rivers.len() {
+            0 => String::new(),
+            _ => format!(
+                "# The rivers of the map, with the heights of their beds: every level leads them along these lines.\nrivers_file = {rivers}\nsmooth = true\n"
+            ),
+        };
         let lake_count = match map.lakes.len() {
             0 => "The map has no lakes; those of the land are its own.".to_owned(),
             lakes => format!(
@@ -199,8 +205,7 @@ halvings = {halvings}
 details = {details}
 basins = 0.0
 lakes = 0.3
-# The drawn rivers are in {rivers}, the lakes in {lakes}.
-
+{river_keys}
 # The highest cell of the map has {highest} m. Summits above {limit} m are compressed, so that they are not twice as high.
 [nodes.height]
 op = "expr"
