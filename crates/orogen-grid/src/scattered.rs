@@ -195,8 +195,7 @@ mod tests {
         let mut random = Random::of_state(5);
         let mut share = || (random.draw() >> 11) as f64 / (1u64 << 53) as f64;
         let jittered = |k: usize, share: f64| 100.0 * (k as f64 + 0.2 + 0.6 * share);
-        let points: Vec<[f64; 2]> =
-            (0..400).map(|k| [jittered(k % 20, share()), jittered(k / 20, share())]).collect();
+        let points: Vec<[f64; 2]> = (0..400).map(|k| [jittered(k % 20, share()), jittered(k / 20, share())]).collect();
         let values = points.iter().map(|at| surface(*at)).collect();
         (points, values)
     }

@@ -254,7 +254,8 @@ fn hold(recipe: &mut Recipe, name: &str, grid: &Grid) -> Result<()> {
     Ok(())
 }
 
-/// The cell of the first level that is not above `most`, or of one before it if the whole world had more than `samples`.
+/// The cell of the first level that is not above `most`, or of one before it if the whole world had more than
+/// `samples`.
 fn level(template: &Template, size: [f64; 2], most: f64, samples: f64) -> f64 {
     let most = most.min(size[0] / 2.0).min(size[1] / 2.0);
     let mut cell = template.coarsest();

@@ -30,8 +30,8 @@ const WANDER: f64 = 0.7;
 /// Wavelength of the detail of the coast, in distances between the cells of the map.
 const WAVELENGTH: f64 = 2.0;
 
-/// Heights above the first share of the highest cell are compressed by a logarithm; the second share is the height above
-/// it at which they rise half as fast.
+/// Heights above the first share of the highest cell are compressed by a logarithm; the second share is the height
+/// above it at which they rise half as fast.
 const COMPRESSED: [f64; 2] = [0.8, 0.4];
 
 /// The numbers of a recipe.
@@ -189,7 +189,8 @@ at = {at}
 op = "expr"
 expr = "clamp(0.001 * max(heights, 10) * uplift_factor, 0.003, 8)"
 
-# Hillsides are not steeper than 45 degrees however fast the land rises: mountains that are steeper on the map stay lower.
+# Hillsides are not steeper than 45 degrees however fast the land rises: mountains that are steeper on the map stay
+# lower.
 [nodes.stability]
 op = "expr"
 expr = "min(1, (2 / uplift)^0.3)"
@@ -206,7 +207,8 @@ details = {details}
 basins = 0.0
 lakes = 0.3
 {river_keys}
-# The highest cell of the map has {highest} m. Summits above {limit} m are compressed, so that they are not twice as high.
+# The highest cell of the map has {highest} m. Summits above {limit} m are compressed, so that they are not
+# twice as high.
 [nodes.height]
 op = "expr"
 expr = "land - max(land - {limit}, 0) + {rest} * log(1 + max(land - {limit}, 0) / {rest})"

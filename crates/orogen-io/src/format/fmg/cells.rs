@@ -74,7 +74,10 @@ impl Cells {
         let rings = rings(&sides).into_iter().map(|ring| ring.into_iter().map(&place).collect::<Ring>());
         let rings: Vec<Ring> = rings.filter(|ring| twice_area(ring).abs() > 0.0).collect();
         if rings.len() > MAX_RINGS {
-            return Err(format!("its land or a lake has {} separate shores, and at most {MAX_RINGS} are read", rings.len()));
+            return Err(format!(
+                "its land or a lake has {} separate shores, and at most {MAX_RINGS} are read",
+                rings.len()
+            ));
         }
         Ok(nested(rings.iter().collect()))
     }
@@ -152,8 +155,10 @@ mod tests {
     fn squares(width: usize, height: usize) -> Cells {
         let corner = |i: usize, j: usize| (j * (width + 1) + i) as u32;
         let cells = (0..width * height).map(|k| (k % width, k / width));
-        let around: Vec<[u32; 4]> =
-            cells.clone().map(|(i, j)| [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]).collect();
+        let around: Vec<[u32; 4]> = cells
+            .clone()
+            .map(|(i, j)| [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)])
+            .collect();
         Cells {
             middles: cells.map(|(i, j)| [i as f64 + 0.5, j as f64 + 0.5]).collect(),
             vertices: (0..(width + 1) * (height + 1))

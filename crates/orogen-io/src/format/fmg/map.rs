@@ -30,8 +30,7 @@ const BEYOND: f64 = 4.0;
 const RAIN: f64 = 0.1;
 
 /// The advice for files without cells.
-const EXPORT: &str =
-    "export the map again with `Export`, `Export To JSON`, `full`, in Azgaar's Fantasy Map Generator";
+const EXPORT: &str = "export the map again with `Export`, `Export To JSON`, `full`, in Azgaar's Fantasy Map Generator";
 
 /// Water in place of land.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -108,7 +107,8 @@ pub struct FmgMap {
     pub spacing: f64,
     /// Heights of cells; all of the land, and of water those of the grid if the file has it.
     pub sites: Vec<Site>,
-    /// The land with its lakes: polygons of an outer ring and its holes. Land at the border of the map goes on beyond it.
+    /// The land with its lakes: polygons of an outer ring and its holes. Land at the border of the map goes on beyond
+    /// it.
     pub coast: Vec<Vec<Ring>>,
     /// The lakes, the largest first.
     pub lakes: Vec<Lake>,
@@ -214,7 +214,11 @@ impl FmgMap {
             notes.push("it has no precipitation (`grid.cells[].prec`); the rain is the same everywhere".into());
         }
         Ok(FmgMap {
-            name: [&document.info, &document.settings].iter().find_map(|table| table.text("mapName", 0)).unwrap_or_default().to_owned(),
+            name: [&document.info, &document.settings]
+                .iter()
+                .find_map(|table| table.text("mapName", 0))
+                .unwrap_or_default()
+                .to_owned(),
             seed: document.info.text("seed", 0).and_then(|seed| seed.parse().ok()),
             size,
             spacing,
@@ -230,8 +234,8 @@ impl FmgMap {
 }
 
 /// The message for the tool's own files.
-const SAVED: &str = "it is no JSON; a .map file is only read by Azgaar's Fantasy Map Generator itself: load it there, then choose \
-                     `Export`, `Export To JSON`, `full`";
+const SAVED: &str = "it is no JSON; a .map file is only read by Azgaar's Fantasy Map Generator itself: load it there, \
+                     then choose `Export`, `Export To JSON`, `full`";
 
 /// Metres per pixel, and the size in metres.
 fn scale(document: &Document, width: Option<f64>) -> std::result::Result<(f64, [f64; 2]), String> {
@@ -251,7 +255,10 @@ fn scale(document: &Document, width: Option<f64>) -> std::result::Result<(f64, [
             };
             let unit = settings.text("distanceUnit", 0).unwrap_or_default();
             let Some(metres) = units::metres(unit) else {
-                return Err(format!("`settings.distanceUnit` is `{}`, whose length is not known; {advice}", unit.escape_debug()));
+                return Err(format!(
+                    "`settings.distanceUnit` is `{}`, whose length is not known; {advice}",
+                    unit.escape_debug()
+                ));
             };
             scale * metres
         }
@@ -448,9 +455,9 @@ fn lakes(document: &Document, around: &Surroundings, exponent: f64) -> std::resu
         let own = || members.iter().map(|member| member.1);
         let parts = cells.polygons(own(), |vertex| cells.vertices[vertex as usize])?;
         let first = members[0].1;
-        let feature = table.number("f", first).and_then(|id| {
-            Some(id as usize).filter(|row| features.number("i", *row) == Some(id))
-        });
+        let feature = table
+            .number("f", first)
+            .and_then(|id| Some(id as usize).filter(|row| features.number("i", *row) == Some(id)));
         let sum = own().map(|cell| cells.middles[cell]).fold([0.0; 2], |sum, at| [sum[0] + at[0], sum[1] + at[1]]);
         let mean = sum.map(|sum| sum / members.len() as f64);
         let far = |cell: usize| libm::hypot(cells.middles[cell][0] - mean[0], cells.middles[cell][1] - mean[1]);

@@ -41,7 +41,8 @@ pub fn rivers(document: &Document, around: &Surroundings) -> Result<(Vec<River>,
             continue;
         }
         let positive = |name| table.number(name, row).filter(|number| *number > 0.0);
-        let name = [table.text("name", row), table.text("type", row)].into_iter().flatten().collect::<Vec<_>>().join(" ");
+        let name =
+            [table.text("name", row), table.text("type", row)].into_iter().flatten().collect::<Vec<_>>().join(" ");
         let river = River {
             name,
             points,

@@ -45,7 +45,8 @@ fn along(row: usize, columns: impl Iterator<Item = usize>) -> Vec<usize> {
     cells
 }
 
-/// An export of 240 hexagonal cells, 20 km wide: two landmasses, a lake, five rivers with a confluence, and settlements.
+/// An export of 240 hexagonal cells, 20 km wide: two landmasses, a lake, five rivers with a confluence, and
+/// settlements.
 #[must_use]
 pub fn map() -> Value {
     let mut vertices: Vec<[f64; 2]> = Vec::new();
@@ -62,8 +63,7 @@ pub fn map() -> Value {
         .map(|(i, (column, row))| {
             let [x, y] = middle(column, row);
             let (half, near, far) = (STEP / 2.0, STEP * 0.288_675, STEP * 0.577_35);
-            let corners =
-                [[0.0, -far], [half, -near], [half, near], [0.0, far], [-half, near], [-half, -near]];
+            let corners = [[0.0, -far], [half, -near], [half, near], [0.0, far], [-half, near], [-half, -near]];
             let around = corners.map(|[east, south]| corner([x + east, y + south]));
             let feature = if (column, row) == LAKE { 4 } else { 1 };
             json!({ "i": i, "v": around, "c": [], "p": [x, y], "g": i, "h": height(column, row), "f": feature })
@@ -95,7 +95,8 @@ pub fn map() -> Value {
                 { "i": 4, "type": "lake", "name": "Long Mere", "height": 30.5 },
             ],
             "rivers": [
-                { "i": 2, "parent": 1, "discharge": 40, "width": 0.05, "name": "Ash", "type": "Brook", "cells": tributary },
+                { "i": 2, "parent": 1, "discharge": 40, "width": 0.05, "name": "Ash", "type": "Brook",
+                  "cells": tributary },
                 { "i": 1, "parent": 1, "discharge": 90, "width": 0.1, "name": "Arden", "type": "River", "cells": main },
                 { "i": 3, "parent": 3, "discharge": 70, "width": 0.1, "name": "Weir", "cells": outlet },
                 { "i": 4, "parent": 3, "discharge": 30, "width": 0.1, "name": "Inlet", "cells": inlet },

@@ -65,7 +65,9 @@ impl Table {
     pub fn number(&self, name: &str, row: usize) -> Option<f64> {
         match self.data(name)? {
             Data::Numbers(numbers) => numbers.get(row).copied().filter(|number| number.is_finite()),
-            Data::Texts(texts) => texts.get(row)?.as_ref()?.trim().parse().ok().filter(|number: &f64| number.is_finite()),
+            Data::Texts(texts) => {
+                texts.get(row)?.as_ref()?.trim().parse().ok().filter(|number: &f64| number.is_finite())
+            }
             Data::Lists { .. } => None,
         }
     }

@@ -37,14 +37,24 @@ fn the_small_map_is_read() {
     assert_eq!(map.rain.len(), 240);
     let names: Vec<&str> = map.settlements.iter().map(|settlement| settlement.name.as_str()).collect();
     assert_eq!(names, ["Aldermouth, \"old\"", "Upper Ford"]);
-    assert_eq!(map.notes, ["1 river with fewer than two points left out", "1 settlement without a position on the map left out (`pack.burgs`)"]);
+    assert_eq!(
+        map.notes,
+        [
+            "1 river with fewer than two points left out",
+            "1 settlement without a position on the map left out (`pack.burgs`)"
+        ]
+    );
 }
 
 #[test]
 fn rivers_are_in_order_and_tributaries_end_on_them() {
     let map = parsed(&samples::map()).unwrap();
-    let names: Vec<(&str, Option<usize>)> = map.rivers.iter().map(|river| (river.name.as_str(), river.parent)).collect();
-    assert_eq!(names, [("Arden River", None), ("Weir", None), ("Eastern", None), ("Ash Brook", Some(0)), ("Inlet", Some(1))]);
+    let names: Vec<(&str, Option<usize>)> =
+        map.rivers.iter().map(|river| (river.name.as_str(), river.parent)).collect();
+    assert_eq!(
+        names,
+        [("Arden River", None), ("Weir", None), ("Eastern", None), ("Ash Brook", Some(0)), ("Inlet", Some(1))]
+    );
     for river in &map.rivers {
         if let Some(parent) = river.parent {
             assert!(map.rivers[parent].points.contains(river.points.last().unwrap()), "{river:?}");
@@ -75,9 +85,11 @@ fn other_shapes_of_exports_are_the_same_map() {
     assert_eq!((&found.coast, &found.lakes), (&expect.coast, &expect.lakes));
     assert!(found.rain.is_empty() && found.notes.iter().any(|note| note.contains("no precipitation")));
     // Cells as columns, and vertices beside them.
-    let column = |name: &str| map["pack"]["cells"].as_array().unwrap().iter().map(|cell| cell[name].clone()).collect::<Value>();
+    let column =
+        |name: &str| map["pack"]["cells"].as_array().unwrap().iter().map(|cell| cell[name].clone()).collect::<Value>();
     let mut columns = map.clone();
-    columns["pack"]["cells"] = json!({ "p": column("p"), "v": column("v"), "h": column("h"), "f": column("f"), "g": column("g") });
+    columns["pack"]["cells"] =
+        json!({ "p": column("p"), "v": column("v"), "h": column("h"), "f": column("f"), "g": column("g") });
     columns["vertices"] = columns["pack"]["vertices"].take();
     columns["pack"].as_object_mut().unwrap().remove("vertices");
     assert!(parsed(&columns).unwrap() == expect);
