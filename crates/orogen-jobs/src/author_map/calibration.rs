@@ -11,7 +11,7 @@ use std::sync::Arc;
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::session;
 use orogen_engine::world::{HEIGHT, World};
-use orogen_grid::error::Result;
+use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_grid::scattered::{Scattered, means_above, multiplied};
@@ -22,7 +22,6 @@ use orogen_io::format::features::FeatureLayer;
 use orogen_io::format::fmg::FmgMap;
 use orogen_io::format::outlines::DrawingKind;
 
-use super::job::internal;
 use super::rasters::{LENGTH, Rasters};
 use super::recipe::Template;
 use super::{files, layers};
@@ -267,6 +266,11 @@ fn level(template: &Template, size: [f64; 2], most: f64, samples: f64) -> f64 {
 
 fn logarithm(made: f64, wanted: f64) -> f64 {
     libm::log((wanted + OFFSET) / (made.max(0.0) + OFFSET)).clamp(-MAX_LOGARITHM, MAX_LOGARITHM)
+}
+
+/// The error for what cannot happen.
+fn internal(why: &str) -> Error {
+    Error::new(ErrorKind::Internal, why)
 }
 
 impl Calibration {

@@ -7,13 +7,14 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Grid;
 use orogen_io::file::{self, OutputFolder, OutputPolicy, Staged};
 use orogen_io::format::features::{Crs, FeatureLayer};
+use orogen_io::format::fmg::FmgMap;
 use orogen_io::format::geotiff::{Options as Layout, writer};
 use orogen_io::format::{csv, geojson};
 use orogen_io::fs;
 use orogen_io::spool::Spool;
 
-use super::job::AuthorWorld;
 use super::layers;
+use super::rasters::Rasters;
 
 /// The files in the folder.
 pub const COAST: &str = "coast.geojson";
@@ -41,17 +42,23 @@ enum Content<'a> {
 /// If one exists.
 pub fn check_new(recipe: &Path, folder: &Path) -> Result<()> {
     let inner = [COAST, RIVERS, LAKES, PLACES, HEIGHTS, UPLIFT, RAIN].map(|name| folder.join(name));
-    let paths = inner.iter().map(PathBuf::as_path).chain([recipe]);
-    for path in paths.filter(|path| fs::symlink_metadata(path).is_ok()) {
-        let message = format!("{} already exists and is left unchanged; choose another name", path.display());
-        return Err(Error::new(ErrorKind::File, message));
+    let mut paths = inner.iter().map(PathBuf::as_path).chain([recipe]);
+    match paths.find(|path| fs::symlink_metadata(path).is_ok()) {
+        None => Ok(()),
+        Some(path) => {
+            let message = format!("{} already exists and is left unchanged; choose another name", path.display());
+            Err(Error::new(ErrorKind::File, message))
+        }
     }
-    Ok(())
 }
 
 /// Writes all files, or none if one of them exists.
-pub fn write(world: &AuthorWorld, recipe: &Path, folder: &Path, policy: &OutputPolicy) -> Result<()> {
-    let (map, rasters) = (&world.map, &world.rasters);
+pub fn write(
+    (map, rasters, text): (&FmgMap, &Rasters, String),
+    recipe: &Path,
+    folder: &Path,
+    policy: &OutputPolicy,
+) -> Result<()> {
     let inner = |name: &str| folder.join(name);
     let mut files = vec![
         (inner(COAST), Content::Features(layers::coast(map))),
@@ -65,11 +72,11 @@ pub fn write(world: &AuthorWorld, recipe: &Path, folder: &Path, policy: &OutputP
         files.push((inner(RAIN), Content::Raster(rain, "")));
     }
     // The recipe is last: if it is there, its files are, too.
-    files.push((recipe.to_path_buf(), Content::Text(world.recipe())));
+    files.push((recipe.to_path_buf(), Content::Text(text)));
     check_new(recipe, folder)?;
     let ready = OutputFolder::ready(folder)?;
     let stage = |(path, content): &(_, Content)| -> Result<Staged> {
-        file::stage(&policy.output(path)?, |out| write_content(world, content, out))
+        file::stage(&policy.output(path)?, |out| write_content(map, content, out))
     };
     let staged = files.iter().map(stage).collect::<Result<Vec<Staged>>>()?;
     file::commit(staged)?;
@@ -77,12 +84,12 @@ pub fn write(world: &AuthorWorld, recipe: &Path, folder: &Path, policy: &OutputP
     Ok(())
 }
 
-fn write_content(world: &AuthorWorld, content: &Content, out: &mut dyn Write) -> io::Result<()> {
+fn write_content(map: &FmgMap, content: &Content, out: &mut dyn Write) -> io::Result<()> {
     match content {
         Content::Text(text) => out.write_all(text.as_bytes()),
         Content::Features(layer) => write_geojson(out, layer),
         Content::Raster(grid, unit) => writer::write(out, grid, &Layout::of_unit(unit), Spool::in_memory()),
-        Content::Names => csv::write_names(out, &layers::names(&world.map), 1),
+        Content::Names => csv::write_names(out, &layers::names(map), 1),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use orogen_engine::session;
-use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::error::Result;
 use orogen_grid::progress::Progress;
 use orogen_grid::words::{count, number};
 use orogen_io::file::OutputPolicy;
@@ -107,7 +107,7 @@ impl AuthorWorld {
     /// # Errors
     /// If a file exists, or cannot be written.
     pub fn write(&self, recipe: &Path, folder: &Path, policy: &OutputPolicy) -> Result<()> {
-        files::write(self, recipe, folder, policy)
+        files::write((&self.map, &self.rasters, self.recipe()), recipe, folder, policy)
     }
 
     /// Correlation of the heights of the world with those of the map's cells.
@@ -136,9 +136,4 @@ impl AuthorWorld {
             count(settlements.len(), "settlement"),
         )
     }
-}
-
-/// The error for what cannot happen.
-pub(super) fn internal(why: &str) -> Error {
-    Error::new(ErrorKind::Internal, why)
 }

@@ -7,7 +7,9 @@ use orogen_grid::words::{bytes, count, number};
 
 use super::cells::{Cells, Sets};
 use super::document::Document;
+use super::parts::{Lake, River, Settlement, Site, Water};
 use super::rivers::rivers;
+use super::surroundings::Surroundings;
 use super::units::{self, EXPONENTS, LAND};
 use crate::format::dem::refused;
 use crate::format::features::Ring;
@@ -31,67 +33,6 @@ const RAIN: f64 = 0.1;
 
 /// The advice for files without cells.
 const EXPORT: &str = "export the map again with `Export`, `Export To JSON`, `full`, in Azgaar's Fantasy Map Generator";
-
-/// Water in place of land.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Water {
-    /// Water that reaches the border of the map.
-    Sea,
-    /// Other water.
-    Lake,
-}
-
-/// A height at a position.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Site {
-    /// Metres east and south of the north-west corner of the map.
-    pub at: [f64; 2],
-    /// Height in metres; of water, the height of its bed.
-    pub height: f64,
-    /// Water, or `None` for land.
-    pub water: Option<Water>,
-}
-
-/// A lake.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Lake {
-    /// Its name; may be empty.
-    pub name: String,
-    /// The height of its surface in metres, if it is stated.
-    pub height: Option<f64>,
-    /// Its polygons, each an outer ring and its islands; parts that touch at a corner are separate.
-    pub parts: Vec<Vec<Ring>>,
-    /// The middle of the cell of the lake that is nearest to the mean of its cells.
-    pub middle: [f64; 2],
-}
-
-/// A river from its source to its mouth.
-#[derive(Debug, Clone, PartialEq)]
-pub struct River {
-    /// Its name; may be empty.
-    pub name: String,
-    /// Metres east and south of the north-west corner of the map.
-    pub points: Vec<[f64; 2]>,
-    /// Discharge at the mouth in m^3/s.
-    pub discharge: Option<f64>,
-    /// Width at the mouth in metres.
-    pub width: Option<f64>,
-    /// The river that it ends in, one that comes before it.
-    pub parent: Option<usize>,
-}
-
-/// A settlement.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Settlement {
-    /// Its name.
-    pub name: String,
-    /// Metres east and south of the north-west corner of the map.
-    pub at: [f64; 2],
-    /// Whether it is the capital of a state.
-    pub is_capital: bool,
-    /// Number of thousands of people, or another unit of the author's.
-    pub population: f64,
-}
 
 /// A map of Azgaar's Fantasy Map Generator, in metres of the world: x to the east, y to the south, from its north-west
 /// corner.
@@ -120,45 +61,6 @@ pub struct FmgMap {
     pub rain: Vec<([f64; 2], f64)>,
     /// Messages about what was left out.
     pub notes: Vec<String>,
-}
-
-/// What the parts of a map are converted with.
-pub struct Surroundings {
-    pub metres_per_pixel: f64,
-    pub size: [f64; 2],
-    pub spacing: f64,
-    pub cells: Cells,
-    /// The water of each cell.
-    pub water: Vec<Option<Water>>,
-}
-
-impl Surroundings {
-    /// A position within the map, or on its border if it is outside.
-    pub fn limited(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        [x.clamp(0.0, self.size[0]), y.clamp(0.0, self.size[1])]
-    }
-
-    /// The nearest position on the border of the map.
-    pub fn edge(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let [width, height] = self.size;
-        let sides = [(x, [0.0, y]), (width - x, [width, y]), (y, [x, 0.0]), (height - y, [x, height])];
-        sides.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map_or([x, y], |side| side.1)
-    }
-
-    /// Where the line between two neighboring cells crosses their common side, or the middle of that side.
-    pub fn shore(&self, from: usize, to: usize) -> Option<[f64; 2]> {
-        let (one, other) = (self.cells.around(from), self.cells.around(to));
-        let mut common = one.iter().filter(|vertex| other.contains(vertex));
-        let (a, b) = (common.next()?, common.next()?);
-        let [a, b] = [*a, *b].map(|vertex| self.cells.vertices[vertex as usize]);
-        let (p, q) = (*self.cells.middles.get(from)?, *self.cells.middles.get(to)?);
-        let cross = |u: [f64; 2], v: [f64; 2]| u[0] * v[1] - u[1] * v[0];
-        let along = [b[0] - a[0], b[1] - a[1]];
-        let across = [q[0] - p[0], q[1] - p[1]];
-        let share = cross([p[0] - a[0], p[1] - a[1]], across) / cross(along, across);
-        let share = if (0.0..=1.0).contains(&share) { share } else { 0.5 };
-        Some([a[0] + share * along[0], a[1] + share * along[1]])
-    }
 }
 
 impl FmgMap {

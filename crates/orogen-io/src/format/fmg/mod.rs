@@ -7,13 +7,16 @@
 mod cells;
 mod document;
 mod map;
+mod parts;
 mod rivers;
 #[doc(hidden)]
 pub mod samples;
+mod surroundings;
 mod table;
 mod units;
 
-pub use map::{FmgMap, Lake, River, Settlement, Site, Water};
+pub use map::FmgMap;
+pub use parts::{Lake, River, Settlement, Site, Water};
 
 #[cfg(test)]
 mod tests;

@@ -1,7 +1,8 @@
 //! Rivers of a map as lines from source to mouth.
 
 use super::document::Document;
-use super::map::{River, Surroundings, Water};
+use super::parts::{River, Water};
+use super::surroundings::Surroundings;
 
 /// Maximum distance from a tributary's end to the river that it joins, in distances between cells.
 const REACH: f64 = 3.0;
