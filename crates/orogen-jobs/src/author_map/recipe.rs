@@ -136,7 +136,7 @@ impl Template {
             r#"#:schema orogen.schema.json
 # {title}, made by `orogen new --map` from a map of Azgaar's Fantasy Map Generator.
 # The files of the folder open in QGIS. Edit them, or the numbers below, and the world follows.
-# Names on a map: orogen map NAME.toml --names {places} -o map.png
+# A map with names: orogen map {folder}.toml --names {places} -o map.png
 orogen = 1
 about = {about}
 
@@ -230,6 +230,7 @@ floodplain = "land.floodplain"
 sediment = "land.sediment"
 "#,
             title = one_line(name),
+            folder = one_line(folder),
             cell = decimal(*cell),
             octaves = octaves as u32,
         )
