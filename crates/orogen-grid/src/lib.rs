@@ -79,6 +79,8 @@ pub mod hydrography;
 pub mod hydrology;
 mod interop;
 #[doc(hidden)]
+pub mod lava;
+#[doc(hidden)]
 pub mod multiscale;
 #[doc(hidden)]
 pub mod parallel;

@@ -92,6 +92,7 @@ nodes! {
         HeightAboveDrainage,
         Insolation,
         Lakes,
+        Lava,
         Normalise,
         OrographicRain,
         Rivers,

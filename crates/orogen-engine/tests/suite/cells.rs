@@ -3,7 +3,7 @@
 use orogen_engine::declare::Input;
 use orogen_engine::field::{Fbm, Multiply};
 use orogen_engine::node::Node;
-use orogen_engine::value::Value;
+use orogen_engine::value::{Spanned, Value};
 use orogen_engine::{Grid, Progress, Recipe, Window, World, WorldSpec};
 
 const CELL: f64 = 10.0;
@@ -16,6 +16,10 @@ fn world_of(node: &Node, cell: f64, own: f64) -> World {
     node.set_input(0, "land".into());
     if node.spec().op == "dunes" {
         node.set_input(1, 3.0.into());
+    }
+    if let Some(volume) = node.spec().params.iter().position(|param| param.name == "volume") {
+        let volumes = [1e4, 1e5].map(|volume| Spanned::unplaced(Value::Number(volume)));
+        node.set_param(volume, &Value::List(volumes.into())).unwrap();
     }
     let spec = WorldSpec::default().with_seed(5).with_size(Some([1200.0, 880.0])).with_cell(cell);
     let mut recipe = Recipe::new(spec);
@@ -65,6 +69,7 @@ fn a_solver_at_its_own_cell_is_that_of_a_coarser_world() {
         "dunes",
         "fill",
         "lakes",
+        "lava",
         "orographic-rain",
         "rivers",
         "select-share",

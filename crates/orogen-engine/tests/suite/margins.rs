@@ -42,6 +42,8 @@ fn recipe_of(node: &Node, world: WorldSpec, shift: usize) -> Recipe {
     set(&mut node, "stream", &Value::Number(3000.0));
     set(&mut node, "observer", &pair([400.0 + metres, 300.0 + metres]));
     set(&mut node, "days", &pair([80.0, 100.0]));
+    // Flows shorter than the world.
+    set(&mut node, "volume", &pair([1e4, 1e5]));
     let mut recipe = Recipe::new(world);
     recipe.add("noise", Fbm { seed: 3, wavelength: 300.0, octaves: 4, ..Fbm::default() });
     recipe.add("moved", Transform { source: "noise".into(), offset: [-metres; 2], ..Transform::default() });

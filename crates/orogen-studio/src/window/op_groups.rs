@@ -71,6 +71,7 @@ pub static ALL: [OpGroup; 9] = [
             "glaciate",
             "glaciers",
             "dunes",
+            "lava",
         ],
     ),
     group(

@@ -121,6 +121,14 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             // Some thirty steps.
             ("dunes", "years") => Value::Number(0.05 * world.cell * world.cell),
             ("dunes", "wind_spread") => Value::Number(40.0),
+            // Flows of some ten cells, of which a few leave the world.
+            ("lava", "volume") => {
+                let cube = world.cell * world.cell * world.cell;
+                pair(2.0 * cube, 300.0 * cube)
+            }
+            ("lava", "effusion") => Value::Number(0.1 * world.cell),
+            ("lava", "yield_strength") => Value::Number(2000.0 * world.cell),
+            ("lava", "caldera") => Value::Number(9.0 * world.cell),
             ("select-height", "range") => pair(-0.1, 0.1),
             ("select-height", "falloff") => pair(0.3, 0.2),
             ("select-flow", "range") => pair(0.02, 0.1),
