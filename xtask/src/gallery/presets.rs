@@ -17,6 +17,8 @@ fn part(preset: &str) -> &'static str {
         "glaciers" => "430,540,400,400",
         // Rims and walls.
         "canyon" => "250,330,400,400",
+        // The summit.
+        "volcano" => "310,310,400,400",
         // The whole world.
         "caves" => "0,0,384,384",
         _ => "100,100,400,400",

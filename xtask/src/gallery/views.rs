@@ -19,7 +19,7 @@ const VIEWS: [(&str, &str); 7] = [
         "view-mesa",
         "mesa --size 880x495 --samples 9 --color desert --camera 15000,24000,3600 --look 12000,11000 --sun 275,24",
     ),
-    ("view-volcano", "volcano --size 1120x630 --samples 9 --camera 170,20"),
+    ("view-volcano", "volcano --size 1120x630 --samples 9 --color surfaces --camera 215,24"),
 ];
 
 /// Writes them to a folder.
