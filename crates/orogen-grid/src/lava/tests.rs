@@ -203,7 +203,8 @@ fn a_caldera_has_a_flat_floor_and_steep_walls() {
 fn ground_without_heights_and_without_vents_is_left_alone() {
     let mut before = ground(60, 50, rough);
     before.row_mut(20)[10..40].fill(f32::NAN);
-    let after = Lava::default().with_eruptions(5).with_volume([1e5, 1e6]).run(&before, None, &Progress::none()).unwrap();
+    let after =
+        Lava::default().with_eruptions(5).with_volume([1e5, 1e6]).run(&before, None, &Progress::none()).unwrap();
     let lost = after.height.data().iter().filter(|height| height.is_nan()).count();
     assert_eq!(lost, 30);
     let none = Grid::filled(*before.window(), 0.0);
