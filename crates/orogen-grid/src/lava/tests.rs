@@ -182,7 +182,7 @@ fn cinder_cones_have_the_form_of_real_ones() {
 
 #[test]
 fn a_caldera_has_a_flat_floor_and_steep_walls() {
-    let before = ground(151, 151, |x, y| 2000.0 - 0.35 * ((x - 1500.0).hypot(y - 1500.0)));
+    let before = ground(151, 151, |x, y| 2000.0 - 0.35 * libm::hypot(x - 1500.0, y - 1500.0));
     let law = Lava::default().with_eruptions(10).with_volume([4e7, 6e7]).with_caldera(900.0).with_ash(0.0);
     // The vents are in a ring, so that the floor is not covered.
     let mut vents = Grid::filled(*before.window(), 0.0);

@@ -8,7 +8,8 @@ use orogen_grid::lava::Lava as Law;
 use orogen_grid::words::number;
 
 op! {
-    /// Ground after the eruptions of volcanoes: flows of lava with levees and steep fronts, cinder cones, and a caldera.
+    /// Ground after the eruptions of volcanoes: flows of lava with levees and steep fronts, cinder cones, and a
+    /// caldera.
     ///
     /// Eruptions follow each other. Lava is a Bingham fluid: it flows to lower neighbors as far as it is thicker than
     /// `yield_strength` / (density gravity slope) (Hulme 1974; Miyamoto and Sasaki 1997), with a density of 2500
