@@ -32,7 +32,7 @@ fn maps_that_cannot_be_read_leave_no_files() {
     folder.write("saved.map", "1.99|of the tool");
     for (arguments, code, expect) in [
         (&["new", "a", "--map", "none.json"][..], 1, "cannot read the map none.json"),
-        (&["new", "a", "--map", "map.json"], 1, "cannot read map.json: `info.width`"),
+        (&["new", "a", "--map", "map.json"], 1, "cannot read map.json: it has no cells"),
         (&["new", "a", "--map", "saved.map"], 1, "a .map file is only read by Azgaar's Fantasy Map Generator"),
         (&["new", "-", "--map", "map.json"], 2, "give a name in place of `-`"),
         (&["new", "a", "--map", "map.json", "--width", "0"], 2, "a number of kilometres from 1 to 40000"),

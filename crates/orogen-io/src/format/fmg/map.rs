@@ -95,6 +95,7 @@ impl FmgMap {
             return Err(SAVED.into());
         }
         let document = Document::parse(text)?;
+        check_cells(&document)?;
         let (metres_per_pixel, size) = scale(&document, width)?;
         let (cells, heights) = cells(&document, metres_per_pixel, size)?;
         let water = water(&cells, &heights);
@@ -176,8 +177,8 @@ fn scale(document: &Document, width: Option<f64>) -> std::result::Result<(f64, [
     Ok((metres, size))
 }
 
-/// The cells in metres, and their heights from 0 to 100.
-fn cells(document: &Document, metres: f64, size: [f64; 2]) -> std::result::Result<(Cells, Vec<f64>), String> {
+/// Checks that there are cells with positions and corners.
+fn check_cells(document: &Document) -> std::result::Result<(), String> {
     let (table, name) = (&document.pack.cells, document.cells_name);
     if table.rows() == 0 {
         return Err(format!("it has no cells (`{name}`), as in a `minimal` export; {EXPORT}"));
@@ -185,10 +186,16 @@ fn cells(document: &Document, metres: f64, size: [f64; 2]) -> std::result::Resul
     if !table.has("p") {
         return Err(format!("the cells have no positions (`{name}[].p`), as in an export of `grid cells`; {EXPORT}"));
     }
-    let vertices = &document.pack.vertices;
-    if vertices.rows() == 0 {
+    if document.pack.vertices.rows() == 0 {
         return Err(format!("it has no corners of cells (`pack.vertices`); {EXPORT}"));
     }
+    Ok(())
+}
+
+/// The cells in metres, and their heights from 0 to 100.
+fn cells(document: &Document, metres: f64, size: [f64; 2]) -> std::result::Result<(Cells, Vec<f64>), String> {
+    let (table, name) = (&document.pack.cells, document.cells_name);
+    let vertices = &document.pack.vertices;
     // Corners of cells may be outside the map, but not far from it.
     let placed = |[x, y]: [f64; 2]| {
         let at = [x * metres, y * metres];

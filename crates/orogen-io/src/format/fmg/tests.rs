@@ -139,7 +139,7 @@ fn what_is_missing_or_odd_is_a_sentence() {
         ("", "it is not valid JSON of an export"),
         ("[]", "it is not valid JSON of an export"),
         ("{", "it is not valid JSON of an export"),
-        ("{}", "`info.width`"),
+        ("{}", "it has no cells (`pack.cells`)"),
         ("1.99|File can be loaded in azgaar.github.io\n", "a .map file is only read by"),
     ] {
         let why = FmgMap::parse(text, None).unwrap_err();
