@@ -249,7 +249,7 @@ impl Carved {
         self.connect(children, entry, end);
     }
 
-    /// Adds the area of a tributary to the cells of a drawn river down to the next node of the coarser level, whose area
+    /// Adds the area of a tributary to the cells of a drawn river down to the next node of the coarser level, which
     /// contains it.
     fn join(&mut self, parent: &Level, links: &Links, entry: usize, area: f32) {
         let (mut way, mut at) = ([0; JOINED], entry);

@@ -157,7 +157,7 @@ impl Passages {
                 donors[to] += 1;
             }
         }
-        let at_edge = |q: usize| q % width == 0 || q % width == width - 1 || q < width || q + width >= donors.len();
+        let at_edge = |q: usize| [0, width - 1].contains(&(q % width)) || q < width || q + width >= donors.len();
         let starts = |q: usize| self.at(q).is_some_and(|passage| passage.entry > 0.0) && !at_edge(q);
         let mut ends: Vec<usize> = (0..donors.len()).filter(|&q| donors[q] == 0 && starts(q)).collect();
         for _ in 0..BELOW - 2 {
@@ -226,7 +226,7 @@ pub struct Drawn {
 
 impl DrawnRivers {
     /// The cells of a window of level `depth` that rivers cross.
-    pub fn passages(&self, land: &Refinement, depth: usize, window: &Window) -> Passages {
+    pub(super) fn passages(&self, land: &Refinement, depth: usize, window: &Window) -> Passages {
         let wide = window.grown(BELOW);
         let mut found = self.crossed(land, depth, &wide);
         for passage in &mut found.list {

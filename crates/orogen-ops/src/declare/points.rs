@@ -130,8 +130,8 @@ impl<const MIN: usize> PointLists<MIN> {
         read(&self.segments.get_or_make(is_current, make).segments)
     }
 
-    /// The rivers along the points and along the file's lines, which are smooth curves if `smooth` is set. A line that ends within `near` metres of another is its
-    /// tributary. They are made once, and made again only for another file.
+    /// The rivers along the points and along the file's lines, which are smooth curves if `smooth` is set. A line that
+    /// ends within `near` metres of another is its tributary. They are made once, and again only for other options.
     pub fn drawn_rivers(&self, file: &FileRef, smooth: bool, near: f64) -> Arc<DrawnRivers> {
         let drawing = file.drawing();
         let is_current =
