@@ -196,8 +196,14 @@ fn target(path: &Path) -> Result<Destination> {
             if there.permissions().readonly() {
                 return Err(refuse("it is marked read-only"));
             }
-            let real = fs::canonicalize(path).map_err(|cause| Error::file("write", path, &cause))?;
-            Ok(Destination::File { real, permissions: Some(there.permissions()) })
+            match fs::canonicalize(path) {
+                Ok(real) => Ok(Destination::File { real, permissions: Some(there.permissions()) }),
+                // Another process has removed it since.
+                Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
+                    Ok(Destination::File { real: path.to_path_buf(), permissions: None })
+                }
+                Err(cause) => Err(Error::file("write", path, &cause)),
+            }
         }
         Ok(_) => Ok(Destination::Stream),
         Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
