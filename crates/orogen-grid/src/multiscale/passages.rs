@@ -101,7 +101,7 @@ impl Passages {
         })
     }
 
-    /// The river of the crossing enters a cell.
+    /// A river enters a cell.
     fn enter(&mut self, cells: usize, q: usize, entry: f64, river: u32) {
         self.of_cell.resize(cells, 0);
         match (self.of_cell[q] as usize).checked_sub(1) {
