@@ -3,7 +3,6 @@
 use super::children::{Children, heir};
 use super::distances::Distances;
 use super::drainage::{FREE, WATER};
-use super::growth::least_rise;
 use super::lakes::{drains, is_lake};
 use super::level::Level;
 use super::links::{Child, Links};
@@ -63,7 +62,7 @@ pub fn carve(
     };
     carved.lead_lakes(parent, links, children);
     let kilometres = land.kilometres(children.depth);
-    let scale = Scale { rise: least_rise(land, children.depth), cells: 1.0 / (kilometres * kilometres) };
+    let scale = Scale { rise: land.least_rise(children.depth), cells: 1.0 / (kilometres * kilometres) };
     carved.draw(parent, children, drawn, scale);
     let mut arrivals = Vec::new();
     for q in links.kept(parent).filter(|&q| drains(parent.receiver[q])) {

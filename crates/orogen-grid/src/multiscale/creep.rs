@@ -1,7 +1,6 @@
 //! Soil creep on the finest level: slopes become smooth, and every node stays above its receiver.
 
 use super::drainage::{FREE, WATER};
-use super::growth::least_rise;
 use super::refinement::Refinement;
 use super::stencil::Extent;
 use orogen_simd::{Body, Simd, dispatch};
@@ -35,7 +34,7 @@ impl Kept {
     /// The limits on the finest level of valleys, or on a detail level, where the rivers already exist.
     pub fn on(land: &Refinement, depth: usize) -> Kept {
         if land.is_detail(depth) {
-            Kept { fall: least_rise(land, depth), cut_area: f32::INFINITY }
+            Kept { fall: land.least_rise(depth), cut_area: f32::INFINITY }
         } else {
             Kept { fall: 0.02, cut_area: 1400.0 }
         }

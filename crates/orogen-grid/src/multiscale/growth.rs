@@ -11,11 +11,6 @@ use orogen_simd::{Body, Simd, dispatch};
 /// Drainage area, in km^2, from which rivers have floors.
 pub const FLOOR_AREA: f64 = 5.0;
 
-/// Minimum rise over one cell, in metres, so that heights strictly fall. On detail levels it shrinks with the cell, so
-/// that floors stay flat, down to the precision of heights of a few kilometres.
-const LEAST_RISE: f32 = 0.012;
-const LEAST_DETAIL_RISE: f32 = 0.001;
-
 /// The planes of a growing level.
 pub struct Growth {
     pub height: Vec<f32>,
@@ -69,21 +64,12 @@ impl Growth {
         let square_kilometres = cell * cell * 1e-6;
         let scale = Scale {
             cell: cell as f32,
-            least_rise: least_rise(land, depth),
+            least_rise: land.least_rise(depth),
             floor_area: (square_kilometres / FLOOR_AREA) as f32,
         };
         dispatch(Pass { growth: self, extent, law, spacing, least, scale });
         std::mem::swap(&mut self.height, &mut self.next_height);
         std::mem::swap(&mut self.floor, &mut self.next_floor);
-    }
-}
-
-/// The minimum rise over one cell of a level, in metres.
-pub fn least_rise(land: &Refinement, depth: usize) -> f32 {
-    if land.is_detail(depth) {
-        (LEAST_RISE * (land.cell_of(depth) / land.cell) as f32).max(LEAST_DETAIL_RISE)
-    } else {
-        LEAST_RISE
     }
 }
 

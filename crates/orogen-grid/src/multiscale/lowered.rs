@@ -2,7 +2,7 @@
 
 use super::children::{FINEST_GEOGRAPHY, amplitude, indent};
 use super::creep::Kept;
-use super::growth::{FLOOR_AREA, least_rise};
+use super::growth::FLOOR_AREA;
 use super::law::{self, has_floors, river_slope};
 use super::refine::FREE_AREA;
 use super::refinement::Refinement;
@@ -76,7 +76,7 @@ impl Refinement {
             ("indent", indent(self, depth)),
             ("kilometres", kilometres as f32),
             ("cell", cell as f32),
-            ("least_rise", least_rise(self, depth)),
+            ("least_rise", self.least_rise(depth)),
             ("floor_area", (cell * cell * 1e-6 / FLOOR_AREA) as f32),
             ("river_slope", river(kilometres)),
             ("stable_slope", law::stable_slope(self)),

@@ -3,9 +3,7 @@
 //! Every level leads a drawn river through exactly the cells that its line crosses, at the height of the line. Which
 //! cells these are depends on the line alone, so they have the same bits in every window.
 
-use super::children::Children;
 use super::drawn_rivers::DrawnRivers;
-use super::growth::least_rise;
 use super::hash::JITTER;
 use super::level::{Level, cropped};
 use super::refinement::Refinement;
@@ -77,18 +75,9 @@ impl Passages {
     }
 
     /// Moves the nodes of the cells that rivers cross.
-    pub fn place(&self, level: &mut Level) {
+    pub fn place(&self, east: &mut [f32], south: &mut [f32]) {
         for (q, passage) in self.left().chain(self.ended()) {
-            (level.east[q], level.south[q]) = (passage.east, passage.south);
-        }
-    }
-
-    /// Moves children in the cells that rivers cross.
-    pub fn place_children(&self, children: &mut Children) {
-        if children.is_irregular() {
-            for (q, passage) in self.left().chain(self.ended()) {
-                (children.east[q], children.south[q]) = (passage.east, passage.south);
-            }
+            (east[q], south[q]) = (passage.east, passage.south);
         }
     }
 
@@ -233,7 +222,7 @@ impl DrawnRivers {
             let river = &self.rivers[passage.river as usize];
             (passage.height, passage.area) = (river.height_at(passage.entry) as f32, river.area_at(passage.chainage));
         }
-        found.raise(wide.width, least_rise(land, depth));
+        found.raise(wide.width, land.least_rise(depth));
         found.cut_off(wide.width);
         found.cropped(&wide, window)
     }

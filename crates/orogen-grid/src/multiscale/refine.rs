@@ -74,7 +74,7 @@ impl Refinement {
             detail::begin(self, &mut parent);
         }
         let above = given.passages(self, depth - 1, &parent.window);
-        above.place(&mut parent);
+        above.place(&mut parent.east, &mut parent.south);
         let new_lakes = if schedule.lakes > 0 { lakes::begin(self, &mut parent, &above) } else { Vec::new() };
         mouths::lead(&mut parent, given);
         progress.expect(CARVING_WORK.into_iter().chain(schedule.passes.iter().copied().map(work)).sum());
@@ -82,7 +82,9 @@ impl Refinement {
         lake_shores::shape(&new_lakes, &parent, &mut children);
         progress.step(CARVING_WORK[0])?;
         let drawn = Drawn { below: given.passages(self, depth, &children.window), above };
-        drawn.below.place_children(&mut children);
+        if children.is_irregular() {
+            drawn.below.place(&mut children.east, &mut children.south);
+        }
         let carved = self.carved(&parent, &mut children, &drawn, &schedule, progress)?;
         let mut growing = Growing::new(self, &children, carved, given, &schedule);
         for pass in schedule.passes {

@@ -65,6 +65,11 @@ orogen_noise::builder!(Refinement: with_seed(seed: u64), with_cell(cell: f64), w
     with_creep(creep: f64), with_variation(variation: f64), with_jitter(jitter: f64), with_details(details: usize),
     with_lakes(lakes: f64), with_sea(sea: bool), with_drawn(drawn: bool));
 
+/// Minimum rise over one cell, in metres, so that heights strictly fall. On detail levels it shrinks with the cell, so
+/// that floors stay flat, down to the precision of heights of a few kilometres.
+const LEAST_RISE: f32 = 0.012;
+const LEAST_DETAIL_RISE: f32 = 0.001;
+
 /// Maximum number of halvings to the finest level of valleys.
 pub const MAX_LEVELS: usize = 24;
 
@@ -119,6 +124,15 @@ impl Refinement {
     /// Whether a level is finer than the finest level of valleys.
     pub(super) fn is_detail(&self, depth: usize) -> bool {
         depth > self.levels
+    }
+
+    /// The minimum rise over one cell of a level, in metres.
+    pub(super) fn least_rise(&self, depth: usize) -> f32 {
+        if self.is_detail(depth) {
+            (LEAST_RISE * (self.cell_of(depth) / self.cell) as f32).max(LEAST_DETAIL_RISE)
+        } else {
+            LEAST_RISE
+        }
     }
 
     /// Number of cells by which the nodes of a level are ahead of its samples: the node of the cell to the south-east
