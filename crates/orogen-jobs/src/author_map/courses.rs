@@ -2,12 +2,13 @@
 //! mouths in the sea.
 
 use orogen_grid::grid::Grid;
-use orogen_grid::random::mix64;
+use orogen_grid::placement;
+use orogen_grid::random::Random;
 use orogen_io::format::fmg::FmgMap;
 
 /// Number of times each part of a river is halved, and the distance of the new points from the middle, as a share of
 /// its length.
-const HALVINGS: u32 = 4;
+const HALVINGS: u64 = 4;
 const BEND: f64 = 0.16;
 
 /// Height of a bed as a share of the mean height of the land around it.
@@ -46,8 +47,7 @@ fn bent(mut points: Vec<[f64; 2]>, number: u64) -> Vec<[f64; 2]> {
         let mut next = Vec::with_capacity(2 * points.len());
         for (ends, place) in points.windows(2).zip(0u64..) {
             let [[ax, ay], [bx, by]] = [ends[0], ends[1]];
-            let bits = mix64(mix64(number ^ u64::from(halving) << 32) ^ place);
-            let aside = 2.0 * BEND * ((bits >> 11) as f64 / (1u64 << 53) as f64 - 0.5);
+            let aside = BEND * (2.0 * Random::new(number << 8 | halving, place).share() - 1.0);
             next.push([ax, ay]);
             next.push([0.5 * (ax + bx) - aside * (by - ay), 0.5 * (ay + by) + aside * (bx - ax)]);
         }
@@ -57,22 +57,16 @@ fn bent(mut points: Vec<[f64; 2]>, number: u64) -> Vec<[f64; 2]> {
     points
 }
 
-/// The height at a position, linear between samples; that of the border beyond it.
-fn height(heights: &Grid, at: [f64; 2]) -> f64 {
+/// The height at a position; beyond the samples that of their border.
+fn height(heights: &Grid, [east, south]: [f64; 2]) -> f64 {
     let window = heights.window();
-    let place = |metres: f64, first: i64, count: usize| {
-        let at = (metres / window.cell - first as f64).clamp(0.0, count as f64 - 1.0);
-        let start = (at.floor() as usize).min(count.saturating_sub(2));
-        (start, (start + 1).min(count - 1), at - start as f64)
+    let inside = |at: f64, first: i64, count: usize| {
+        let first = first as f64 * window.cell;
+        // Not on the last sample, which no cell begins at.
+        at.clamp(first, first + (count as f64 - 1.001).max(0.0) * window.cell)
     };
-    let (left, right, east) = place(at[0], window.x, window.width);
-    let (top, bottom, south) = place(at[1], window.y, window.height);
-    let row = |j: usize| {
-        let [from, to] = [left, right].map(|i| f64::from(heights[(i, j)]));
-        from + east * (to - from)
-    };
-    let (upper, lower) = (row(top), row(bottom));
-    upper + south * (lower - upper)
+    let at = [inside(east, window.x, window.width), inside(south, window.y, window.height)];
+    placement::height(heights, at)
 }
 
 #[cfg(test)]
@@ -93,12 +87,13 @@ mod tests {
     }
 
     #[test]
-    fn heights_are_linear_between_samples_and_go_on_beyond_the_border() {
+    fn heights_go_on_beyond_the_border() {
         let mut grid = Grid::filled(Window::new(3, 2, 10.0).at(-1, 0), 0.0f32);
-        (grid[(0, 0)], grid[(1, 0)], grid[(2, 0)]) = (1.0, 2.0, 4.0);
-        assert_eq!(
-            [[-10.0, 0.0], [5.0, 0.0], [0.0, 5.0], [90.0, -5.0]].map(|at| height(&grid, at)),
-            [1.0, 3.0, 1.0, 4.0]
-        );
+        for j in 0..2 {
+            (grid[(0, j)], grid[(1, j)], grid[(2, j)]) = (1.0, 2.0, 4.0);
+        }
+        for (at, expect) in [([-10.0, 0.0], 1.0), ([5.0, 0.0], 3.0), ([0.0, 5.0], 2.0), ([90.0, -5.0], 4.0)] {
+            assert!((height(&grid, at) - expect).abs() < 0.01, "{at:?}");
+        }
     }
 }
