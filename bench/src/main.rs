@@ -1,15 +1,17 @@
 //! Benchmarks of Orogen against its peers and physical limits, measured in one run. `cargo xtask bench` is the front
 //! end.
 //!
-//! Prints one JSON object, {"area", "simd", "threads", "rows"}; areas `valleys` and `water` print a table. Progress
+//! Prints one JSON object, {"area", "simd", "threads", "rows"}; areas `coasts`, `valleys` and `water` print a table. Progress
 //! goes to standard error.
 #![forbid(unsafe_code)]
 
+mod coasts;
 mod erosion;
 mod filters;
 mod generate;
 #[cfg(feature = "gpu")]
 mod gpu;
+mod land;
 mod measure;
 mod noise;
 mod options;
@@ -48,17 +50,17 @@ const AREAS: &[Area] = &[
     ("resolution", resolution::run),
 ];
 
+/// Areas with options of their own, which print a table.
+type Table = (&'static str, fn(&[String]) -> Result<(), String>);
+
+const TABLES: &[Table] = &[("coasts", coasts::run), ("valleys", valleys::run), ("water", water::run)];
+
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
     if let [area, rest @ ..] = args.as_slice()
-        && area == "water"
+        && let Some((_, measure)) = TABLES.iter().find(|(name, _)| name == area)
     {
-        return finished(water::run(rest));
-    }
-    if let [area, rest @ ..] = args.as_slice()
-        && area == "valleys"
-    {
-        return finished(valleys::run(rest));
+        return finished(measure(rest));
     }
     finished(run(&args).map(|report| println!("{report:#}")))
 }

@@ -14,6 +14,7 @@ pub const ABOUT: &str = "compare with other libraries and the machine's limits; 
 pub const HELP: &str = "
 Usage: cargo xtask bench [AREA] [--json FILE] [--case TEXT] [--quick]
        cargo xtask bench realism --score SCRIPT --dems DIR [--half HALF] [--first SEED] [--case TEXT]
+       cargo xtask bench coasts SOURCE... [--seed N] [--cell M] [--window X,Y,W,H]
        cargo xtask bench valleys SOURCE... [--seed N] [--cell M] [--window X,Y,W,H]
        cargo xtask bench water RECIPE [--seed N] [--cell M] [--origin X,Y] [--side N] [--pairs N] [--pair-side N] [--near N] [--fresh]
 
@@ -49,6 +50,14 @@ missed.
   --dems DIR      the real places, GeoTIFFs of 30 to 90 m
   --half HALF     first or second: compares with every second region of each type only; what is tuned on one half is reported on the other
   --first SEED    the first of the seeds [default: from the clock]
+
+Area coasts, only if it is named: measures continents: the share of land, the dimension of the coast by counted boxes of 2 and 16 cells, islands below 1000
+cells, the share of the sea at distances from the coast that is shallower than 200 m, and the heights of the land.
+
+  SOURCE            presets, recipe files and files of heights in metres, such as windows of a relief of the Earth in an equal-area projection
+  --seed N          seed of presets [default: the recipe's]
+  --cell M          cell in metres [default: 30720]
+  --window X,Y,W,H  first column and row, columns and rows [default: the whole world; 256 x 256 cells around the origin of `endless`]
 
 Area valleys, only if it is named: measures the form of valleys: the exponent of their cross sections (1 is a V, 2 a parabola) along rivers of 5 to 300 km2,
 and the steps at the mouths of tributaries, the fall of their last 1.2 km beyond what the 1.2 km above them let expect.
@@ -90,6 +99,7 @@ const REALISM: &str = "realism";
 /// Areas that measure recipes, so they run only if they are named.
 const WATER: &str = "water";
 const VALLEYS: &str = "valleys";
+const COASTS: &str = "coasts";
 
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Options {
@@ -104,7 +114,7 @@ struct Options {
 /// Runs the measurements.
 pub fn run(args: &[String]) -> Result {
     if let [area, rest @ ..] = args
-        && [WATER, VALLEYS].contains(&area.as_str())
+        && [WATER, VALLEYS, COASTS].contains(&area.as_str())
     {
         let mut command = shell::cargo("run --quiet --release --package orogen-bench --");
         return shell::run(command.arg(area).args(rest));
@@ -169,7 +179,7 @@ fn parse(args: &[String]) -> Result<Options> {
             flag if flag.starts_with('-') => return Err(Failure::usage(format!("there is no option '{flag}'"))),
             other => {
                 return Err(Failure::usage(format!(
-                    "there is no area '{other}'; there are: {}, {REALISM}, {VALLEYS}, {WATER}",
+                    "there is no area '{other}'; there are: {}, {COASTS}, {REALISM}, {VALLEYS}, {WATER}",
                     AREAS.join(", ")
                 )));
             }

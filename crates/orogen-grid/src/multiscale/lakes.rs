@@ -17,14 +17,22 @@ const AREAS: std::ops::Range<f32> = 16.0..3000.0;
 /// Share of the nodes of these rivers that become outlets of lakes, where lakes are most frequent.
 const MAX_CHANCE: f64 = 0.16;
 
-/// Wavelength, in km, of the noise of the frequency of lakes, and its values for no lakes and for frequent lakes.
-const DISTRICTS: f64 = 160.0;
-const SPARSE: f64 = -0.35;
-const FREQUENT: f64 = 0.45;
+/// Wavelengths, in km, of the noises of the frequency of lakes, the weight of the second one, what high mountains add,
+/// and the values of the sum for rare and for frequent lakes. As on Earth, lakes are frequent where ice was: on a fifth
+/// of the land, more often in mountains.
+const DISTRICTS: [f64; 2] = [1100.0, 160.0];
+const FINE_DISTRICTS: f64 = 0.5;
+const IN_MOUNTAINS: f64 = 0.3;
+const SPARSE: f64 = 0.1;
+const FREQUENT: f64 = 0.5;
+
+/// Frequency of lakes where they are rare.
+const LEAST: f64 = 0.02;
 
 /// Logarithms of uplift over erodibility for rare lakes, in plains, and for frequent lakes, in hills and mountains.
 const PLAINS: f64 = -2.5;
 const HILLS: f64 = -0.5;
+const MOUNTAINS: f64 = 0.6;
 const CHANCE_IN_PLAINS: f64 = 0.1;
 
 /// Maximum number of links from the outlet to the upper end of a lake.
@@ -181,8 +189,11 @@ fn frequency(land: &Refinement, level: &Level, q: usize) -> f64 {
     let (x, y) = level.place(q);
     let kilometres = |index: i64, share: f32| land.metres(level.depth, index, share) * 1e-3;
     let (east, south) = (kilometres(x, level.east[q]), kilometres(y, level.south[q]));
-    let district = smooth_step(SPARSE, FREQUENT, noise(land.seed, 8, east / DISTRICTS, south / DISTRICTS));
-    let relief = smooth_step(PLAINS, HILLS, f64::from(level.uplift[q]));
+    let [wide, fine] = DISTRICTS.map(|wavelength| noise(land.seed, 8, east / wavelength, south / wavelength));
+    let uplift = f64::from(level.uplift[q]);
+    let mountains = IN_MOUNTAINS * smooth_step(HILLS, MOUNTAINS, uplift);
+    let district = smooth_step(SPARSE, FREQUENT, wide + FINE_DISTRICTS * fine + mountains).max(LEAST);
+    let relief = smooth_step(PLAINS, HILLS, uplift);
     district * (CHANCE_IN_PLAINS + (1.0 - CHANCE_IN_PLAINS) * relief)
 }
 

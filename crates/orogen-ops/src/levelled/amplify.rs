@@ -18,7 +18,7 @@ drained_op! {
     /// land, unless `sea` is set.
     ///
     /// Related: terrain amplification (Schott and others 2024), hydrology-based terrain (Génevaux and others 2013).
-    pub struct Amplify = "amplify", levelled, revision 3;
+    pub struct Amplify = "amplify", levelled, revision 4;
     inputs {
         /// Heights of the coarse land without depressions. It is read at the coarsest cell, `cell` times 2 to the power
         /// of `halvings`: solve it there.
@@ -68,9 +68,9 @@ drained_op! {
         /// them, rough rock where they are steep, and beds and banks of rivers that are wider than a sample. Finer
         /// samples are interpolated.
         details: u32 = 0, range 0 to 10;
-        /// Frequency of lakes with an outlet along rivers, from none (0) to many (1). Their regions are about 100 km
-        /// wide; there are few in plains. They begin at cells of 5 km to 400 m: levels that begin with a smaller cell
-        /// have none.
+        /// Frequency of lakes with an outlet along rivers, from none (0) to many (1). They are frequent in
+        /// regions of about 500 km, as where ice was, more often in mountains, and rare elsewhere and in plains. They
+        /// begin at cells of 5 km to 400 m: levels that begin with a smaller cell have none.
         lakes: f64 = 0.0, range 0.0 to 1.0;
         /// Whether there is a sea where the source is at or below the world's sea level. It is as deep as the source,
         /// up to 4944 m, and rivers end at the shore of this sea.

@@ -20,7 +20,7 @@ drained_op! {
     ///
     /// Related: hydrology-based terrain (Génevaux and others 2013), Dendry (Gaillard and others 2019), multi-scale
     /// terrain amplification (Schott and others 2024).
-    pub struct Continents = "continents", levelled, revision 4;
+    pub struct Continents = "continents", levelled, revision 5;
     inputs {
         /// Distance to the shore in metres, positive on land, in place of the op's own continents. Lakes and rivers
         /// keep their own water; rivers end in its sea or, where a coarse level saw a sea that is not there, in a lake.
@@ -70,9 +70,9 @@ drained_op! {
         /// finest valleys, with gullies on them, rough rock where they are steep, and beds and banks of rivers that are
         /// wider than a sample. Finer samples are interpolated.
         details: u32 = 0, range 0 to 10;
-        /// Frequency of lakes with an outlet along rivers, from none (0) to many (1). Their regions are about 100 km
-        /// wide; there are few in plains. They begin at cells of 5 km to 400 m: levels that begin with a smaller cell
-        /// have none.
+        /// Frequency of lakes with an outlet along rivers, from none (0) to many (1). They are frequent in
+        /// regions of about 500 km, as where ice was, more often in mountains, and rare elsewhere and in plains. They
+        /// begin at cells of 5 km to 400 m: levels that begin with a smaller cell have none.
         lakes: f64 = 0.0, range 0.0 to 1.0;
         /// Rivers drawn on the map, each a line from its source to its mouth, as in `path`. Every level leads them
         /// through exactly the cells that their lines cross. They end in the sea or on another river. A third number of

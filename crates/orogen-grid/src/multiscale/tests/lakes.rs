@@ -12,9 +12,8 @@ fn land() -> Continents {
 
 /// A position with lakes, in samples of a level.
 fn district(depth: usize) -> (i64, i64) {
-    let (east, south) = coast(8);
     let at = |middle: i64| (middle << 4) >> (12 - depth);
-    (at(east + 461) - 80, at(south + 110) - 60)
+    (at(68) - 80, at(307) - 60)
 }
 
 /// The receiver of a node that is not at the edge.
