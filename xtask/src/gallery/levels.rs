@@ -13,7 +13,7 @@ const WINDOW: &str = "-256,-256,512,512";
 
 /// A map sheet of a region with lakes.
 const LAKES: &str =
-    "--window=-1850,-1750,640,640 --cell 60 --no-contours --no-summits --no-title --size 900 --no-sidecar";
+    "--window=-2560,-2112,640,640 --cell 60 --no-contours --no-summits --no-title --size 900 --no-sidecar";
 
 /// A map of `endless` at each cell, and a map sheet with lakes.
 pub fn write(images: &Path, work: &Path) -> Result {
