@@ -24,6 +24,19 @@ pub fn name(source: &str) -> String {
 
 /// The heights of a source, with the surface of water where it has water.
 pub fn heights(source: &str, request: &Request) -> Result<Grid, String> {
+    of_world(source, request, |world| match world.recipe().outputs().any(|name| name == "surface") {
+        true => "surface",
+        false => "height",
+    })
+}
+
+/// A layer of a source.
+pub fn grid(source: &str, request: &Request, layer: &'static str) -> Result<Grid, String> {
+    of_world(source, request, |_| layer)
+}
+
+/// The layer that is chosen of the world of a source.
+fn of_world(source: &str, request: &Request, layer: impl Fn(&World) -> &'static str) -> Result<Grid, String> {
     let text = |error: orogen::Error| format!("{source}: {error}");
     let world = match presets::find(source) {
         Some(preset) => {
@@ -39,8 +52,7 @@ pub fn heights(source: &str, request: &Request) -> Result<Grid, String> {
         Some([x, y, width, height]) => Window::new(width as usize, height as usize, cell).at(x, y),
         None => world.full_window(cell).map_err(text)?,
     };
-    let layer = if world.recipe().outputs().any(|name| name == "surface") { "surface" } else { "height" };
-    world.window(layer, &window).map_err(text)
+    world.window(layer(&world), &window).map_err(text)
 }
 
 pub fn sorted(mut values: Vec<f64>) -> Vec<f64> {

@@ -1,12 +1,13 @@
 //! Benchmarks of Orogen against its peers and physical limits, measured in one run. `cargo xtask bench` is the front
 //! end.
 //!
-//! Prints one JSON object, {"area", "simd", "threads", "rows"}; areas `coasts`, `valleys` and `water` print a table. Progress
-//! goes to standard error.
+//! Prints one JSON object, {"area", "simd", "threads", "rows"}; areas `coasts`, `fans`, `valleys` and `water` print a
+//! table. Progress goes to standard error.
 #![forbid(unsafe_code)]
 
 mod coasts;
 mod erosion;
+mod fans;
 mod filters;
 mod generate;
 #[cfg(feature = "gpu")]
@@ -53,7 +54,8 @@ const AREAS: &[Area] = &[
 /// Areas with options of their own, which print a table.
 type Table = (&'static str, fn(&[String]) -> Result<(), String>);
 
-const TABLES: &[Table] = &[("coasts", coasts::run), ("valleys", valleys::run), ("water", water::run)];
+const TABLES: &[Table] =
+    &[("coasts", coasts::run), ("fans", fans::run), ("valleys", valleys::run), ("water", water::run)];
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();

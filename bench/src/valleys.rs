@@ -2,7 +2,7 @@
 //! how high the mouths of tributaries hang above the valleys that they enter. Prints a table.
 #![allow(clippy::disallowed_methods, reason = "a measurement, of which no terrain is made")]
 
-mod network;
+pub mod network;
 mod sections;
 mod steps;
 

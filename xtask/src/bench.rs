@@ -16,6 +16,7 @@ Usage: cargo xtask bench [AREA] [--json FILE] [--case TEXT] [--quick]
        cargo xtask bench realism --score SCRIPT --dems DIR [--half HALF] [--first SEED] [--case TEXT]
        cargo xtask bench coasts SOURCE... [--seed N] [--cell M] [--window X,Y,W,H]
        cargo xtask bench valleys SOURCE... [--seed N] [--cell M] [--window X,Y,W,H]
+       cargo xtask bench fans SOURCE... [--seed N] [--cell M] [--window X,Y,W,H]
        cargo xtask bench water RECIPE [--seed N] [--cell M] [--origin X,Y] [--side N] [--pairs N] [--pair-side N] [--near N] [--fresh]
 
 Builds the benches at full optimization, measures one area (or all in turn) and prints a table.
@@ -67,6 +68,9 @@ and the steps at the mouths of tributaries, the fall of their last 1.2 km beyond
   --cell M          cell in metres [default: that of the recipe or file]
   --window X,Y,W,H  first column and row, columns and rows [default: the whole world]
 
+Area fans, only if it is named: measures alluvial fans of recipes with an output `sediment`: their slopes by distance from the apex, their areas, and
+depressions; with the options of area valleys.
+
 Area water, only if it is named: measures the water of a recipe on 3 x 3 tiles that are made apart: depressions, beds of rivers, agreement of D8 on
 the heights with `flow`, rivers at the borders of tiles; fails if a target is missed.
 
@@ -100,6 +104,7 @@ const REALISM: &str = "realism";
 const WATER: &str = "water";
 const VALLEYS: &str = "valleys";
 const COASTS: &str = "coasts";
+const FANS: &str = "fans";
 
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Options {
@@ -114,7 +119,7 @@ struct Options {
 /// Runs the measurements.
 pub fn run(args: &[String]) -> Result {
     if let [area, rest @ ..] = args
-        && [WATER, VALLEYS, COASTS].contains(&area.as_str())
+        && [COASTS, FANS, VALLEYS, WATER].contains(&area.as_str())
     {
         let mut command = shell::cargo("run --quiet --release --package orogen-bench --");
         return shell::run(command.arg(area).args(rest));

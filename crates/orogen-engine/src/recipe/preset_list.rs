@@ -3,6 +3,7 @@
     Preset { name: "alpine", text: include_str!("../../recipes/alpine.toml") },
     Preset { name: "archipelago", text: include_str!("../../recipes/archipelago.toml") },
     Preset { name: "badlands", text: include_str!("../../recipes/badlands.toml") },
+    Preset { name: "basin", text: include_str!("../../recipes/basin.toml") },
     Preset { name: "biomes", text: include_str!("../../recipes/biomes.toml") },
     Preset { name: "canyon", text: include_str!("../../recipes/canyon.toml") },
     Preset { name: "caves", text: include_str!("../../recipes/caves.toml") },

@@ -6,6 +6,7 @@ use crate::checks::{checks, never, now_and_then, steps};
 use crate::grid::Grid;
 use crate::progress::Progress;
 use crate::{error, parallel};
+use std::ops::Range;
 
 /// The weight of a cell where the rain factor is 1. Weights are integers, so that their sums do not depend on the order
 /// of addition.
@@ -34,11 +35,11 @@ pub struct Accumulation {
 
 /// A band of rows. Its cells, except those of the trunk, can be processed without reading other bands.
 #[derive(Debug, Clone)]
-pub(super) struct Band {
+struct Band {
     /// The range of cells, row-major.
-    pub cells: std::ops::Range<usize>,
+    cells: Range<usize>,
     /// Cells outside the trunk, each after its receiver.
-    pub order: Vec<u32>,
+    order: Vec<u32>,
 }
 
 impl Band {
@@ -118,9 +119,95 @@ impl Accumulation {
         self.downstream_first().rev()
     }
 
-    /// The trunk, each cell after its receiver, and the bands.
-    pub(super) fn parts(&self) -> (&[u32], &[Band]) {
-        (&self.trunk, &self.bands)
+    /// Replaces the height of every cell with a receiver, each after its receiver: `height` has the cell, its height
+    /// and the new height of the receiver. The bands are computed in parallel.
+    pub(super) fn downstream<E: Send>(
+        &self,
+        receivers: &Receivers,
+        heights: &mut Grid,
+        check: &(impl Fn() -> Result<(), E> + Sync),
+        height: impl Fn(usize, f32, f32) -> f32 + Sync,
+    ) -> Result<(), E> {
+        let width = heights.width();
+        let h = heights.data_mut();
+        for c in self.trunk.iter().map(|c| *c as usize) {
+            let receiver = receivers.of(c);
+            if receiver != c {
+                h[c] = height(c, h[c], h[receiver]);
+            }
+        }
+        let mut rest = h;
+        let mut shares = Vec::with_capacity(self.bands.len());
+        let mut above = Vec::new();
+        for band in &self.bands {
+            let cells = band.cells.len().min(rest.len());
+            let (own, after) = std::mem::take(&mut rest).split_at_mut(cells);
+            // Cells beyond the band's ends are read only if they belong to the trunk, whose heights are already known.
+            let below = after[..width.min(after.len())].to_vec();
+            let last = own[own.len().saturating_sub(width)..].to_vec();
+            shares.push((band, own, std::mem::replace(&mut above, last), below));
+            rest = after;
+        }
+        parallel::try_for_each(shares, |(band, own, above, below)| {
+            let Range { start, end } = band.cells;
+            for (k, c) in band.order.iter().map(|c| *c as usize).enumerate() {
+                now_and_then(k, check)?;
+                let receiver = receivers.of(c);
+                if receiver != c {
+                    let beneath = match receiver {
+                        r if r < start => above[r + above.len() - start],
+                        r if r >= end => below[r - end],
+                        r => own[r - start],
+                    };
+                    own[c - start] = height(c, own[c - start], beneath);
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// Computes a value for every cell, each before its receiver: `value` has the cell and the sum of the values of its
+    /// donors, which are added in the order of the directions, so that the bits do not depend on the bands. The bands
+    /// are computed in parallel.
+    pub(super) fn upstream<T: Copy + Default + Send + Sync, E: Send>(
+        &self,
+        donors: &[u8],
+        width: usize,
+        values: &mut [T],
+        check: &(impl Fn() -> Result<(), E> + Sync),
+        add: impl Fn(T, T) -> T + Sync,
+        value: impl Fn(usize, T) -> T + Sync,
+    ) -> Result<(), E> {
+        let strides = strides(width);
+        let sum = |values: &[T], c: usize, start: usize| {
+            let (mut set, mut sum) = (donors[c], T::default());
+            while set != 0 {
+                let code = set.trailing_zeros() as usize;
+                sum = add(sum, values[neighbor(c, strides[code]) - start]);
+                set &= set - 1;
+            }
+            sum
+        };
+        let mut rest = &mut *values;
+        let mut shares = Vec::with_capacity(self.bands.len());
+        for band in &self.bands {
+            let cells = band.cells.len().min(rest.len());
+            let (own, after) = std::mem::take(&mut rest).split_at_mut(cells);
+            shares.push((band, own));
+            rest = after;
+        }
+        parallel::try_for_each(shares, |(band, own)| {
+            let start = band.cells.start;
+            for (k, c) in band.order.iter().rev().map(|c| *c as usize).enumerate() {
+                now_and_then(k, check)?;
+                own[c - start] = value(c, sum(own, c, start));
+            }
+            Ok(())
+        })?;
+        for c in self.trunk.iter().rev().map(|c| *c as usize) {
+            values[c] = value(c, sum(values, c, 0));
+        }
+        Ok(())
     }
 }
 

@@ -1,7 +1,7 @@
 //! Drainage of every cell, including cells in depressions.
 
 use super::basins::{Basins, Spill, find_basins};
-use super::direction::opposite;
+use super::direction::{neighbor, opposite, strides};
 use super::flats;
 use super::outlets::Outlets;
 use super::receivers::Receivers;
@@ -47,6 +47,35 @@ pub fn route_carving_with(
         progress.advance(1.0);
         progress.check()
     })
+}
+
+/// [`route_carving_with`], but depressions that are deeper than `depth` below their pass keep their water: their pits
+/// have no receiver.
+///
+/// # Errors
+/// If the work is cancelled.
+pub(super) fn route_shallow_with(
+    heights: &Grid,
+    outlets: &Outlets,
+    depth: f32,
+    progress: &Progress,
+) -> Result<Receivers> {
+    progress.expect(PHASES);
+    let mut phase = || {
+        progress.advance(1.0);
+        progress.check()
+    };
+    let mut receivers = over_surface(heights, outlets, Descent::Steepest);
+    phase()?;
+    let basins = find_basins(heights, outlets, &receivers, &mut phase)?;
+    let (h, strides) = (heights.data(), strides(heights.width()));
+    for spill in basins.order.iter().map(|basin| &basins.spills[*basin as usize]) {
+        let next = neighbor(spill.last as usize, strides[usize::from(spill.code)]);
+        if h[spill.last as usize].max(h[next]) - h[spill.pit as usize] <= depth {
+            lead_out(spill, &mut receivers);
+        }
+    }
+    Ok(receivers)
 }
 
 /// Number of phases that [`route_bed`] reports.

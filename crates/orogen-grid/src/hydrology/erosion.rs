@@ -2,6 +2,7 @@
 
 use super::accumulation::{Accumulation, accumulate_rain_with};
 use super::creep::{creep_again, creep_stages};
+use super::deposition::Deposits;
 use super::drainage;
 use super::outlets::Outlets;
 use super::points::Points;
@@ -29,13 +30,15 @@ pub struct Erosion {
     /// Jitter: displacement of the points from the lattice, as a share of half a cell, 0 to 1. Receivers are never
     /// random between jittered points.
     pub jitter: f64,
+    /// G: deposition coefficient of the sediment that rivers carry; 0 for rivers that only erode.
+    pub deposition: f64,
 }
 
 impl Erosion {
     /// A run with this law, duration and number of steps, without creep, with steepest descent on the lattice.
     #[must_use]
     pub const fn new(law: StreamPower, years: f64, steps: u32) -> Erosion {
-        Erosion { law, creep: 0.0, years, steps, scattered: None, jitter: 0.0 }
+        Erosion { law, creep: 0.0, years, steps, scattered: None, jitter: 0.0, deposition: 0.0 }
     }
 }
 
@@ -46,14 +49,16 @@ orogen_noise::builder!(
     with_years(years: f64),
     with_steps(steps: u32),
     with_scattered(scattered: Option<u32>),
-    with_jitter(jitter: f64)
+    with_jitter(jitter: f64),
+    with_deposition(deposition: f64)
 );
 
 impl Erosion {
     /// Erodes `heights`. The border and, if there is a sea level, the sea keep their heights.
     ///
-    /// In the result every cell is higher than its receiver, so there are no depressions and no flats. Returns the flow
-    /// accumulation of the result by steepest descent. Costs O(cells) per step.
+    /// In the result every cell is higher than its receiver, so there are no depressions and no flats; only with
+    /// deposition, depressions that are deeper than [`ErosionRun::KEPT_DEPTH`] are left where sediment has not filled
+    /// them. Returns the flow accumulation of the result by steepest descent. Costs O(cells) per step.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -79,27 +84,6 @@ impl Erosion {
     pub fn work(&self) -> f64 {
         f64::from(self.steps) + ErosionRun::FINISHING
     }
-
-    fn cut(
-        &self,
-        heights: &mut Grid,
-        outlets: &Outlets,
-        ground: &Substrate,
-        descent: Descent,
-        years: f64,
-        progress: &Progress,
-    ) -> Result<()> {
-        let [routing, cutting] = progress.parts([3.0, 2.0]);
-        let receivers = drainage::route_carving_with(heights, outlets, descent, &routing)?.receivers;
-        routing.finish();
-        let [counting, solving] = cutting.parts([1.0, 1.0]);
-        let drained = accumulate_rain_with(&receivers, ground.rain, &counting)?;
-        counting.finish();
-        progress.check()?;
-        self.law.step_with(heights, &receivers, &drained, ground, years, &solving)?;
-        cutting.finish();
-        progress.check()
-    }
 }
 
 /// The state of a run between two steps.
@@ -110,20 +94,30 @@ pub struct ErosionRun<'a> {
     /// The irregular points of the heights during the run; `None` for the lattice.
     points: Option<Points>,
     buffers: Vec<Grid>,
+    /// The sediment; `None` for rivers that only erode.
+    deposits: Option<Deposits>,
     /// Number of completed steps.
     done: u32,
 }
 
+/// The slope of level floors after the last step of a run with deposition.
+const LEVEL_SLOPE: f64 = 1e-6;
+
 impl<'a> ErosionRun<'a> {
     /// The work after the last step; a step counts as 1.
     pub const FINISHING: f64 = 2.0;
+
+    /// Depressions deeper than this, in metres, are left by a run with deposition.
+    pub const KEPT_DEPTH: f32 = 1.0;
 
     /// The state before the first step.
     #[must_use]
     pub fn new(erosion: Erosion, heights: &Grid, ground: &'a Substrate<'a>, sea_level: Option<f32>) -> ErosionRun<'a> {
         let salt = erosion.scattered.unwrap_or_default();
         let points = (erosion.jitter > 0.0).then(|| Points::new(*heights.window(), erosion.jitter, salt));
-        ErosionRun { erosion, ground, outlets: Outlets::new(heights, sea_level), points, buffers: Vec::new(), done: 0 }
+        let outlets = Outlets::new(heights, sea_level);
+        let deposits = (erosion.deposition > 0.0).then(|| Deposits::new(&outlets, erosion.deposition));
+        ErosionRun { erosion, ground, outlets, points, buffers: Vec::new(), deposits, done: 0 }
     }
 
     /// Computes the next step. Between steps the heights are those at the run's points.
@@ -144,7 +138,22 @@ impl<'a> ErosionRun<'a> {
         let amount = years * creep;
         let stages = creep_stages(heights.window(), amount);
         let [cutting, creeping] = progress.parts([45.0, 2.0 * stages]);
-        self.erosion.cut(heights, &self.outlets, &between, descent, years, &cutting)?;
+        let [routing, solving] = cutting.parts([3.0, 2.0]);
+        let drainage = drainage::route_carving_with(heights, &self.outlets, descent, &routing)?;
+        routing.finish();
+        let [counting, solving] = solving.parts([1.0, 1.0]);
+        let drained = accumulate_rain_with(&drainage.receivers, between.rain, &counting)?;
+        counting.finish();
+        progress.check()?;
+        let law = self.erosion.law;
+        match &mut self.deposits {
+            None => law.step_with(heights, &drainage.receivers, &drained, &between, years, &solving)?,
+            Some(deposits) => {
+                let check = || progress.check();
+                deposits.step(&law, heights, &self.outlets, &drainage, &drained, &between, years, &check)?;
+            }
+        }
+        progress.check()?;
         cutting.finish();
         creep_again(heights, &self.outlets, amount, &mut self.buffers, &creeping)?;
         self.done += 1;
@@ -157,15 +166,37 @@ impl<'a> ErosionRun<'a> {
     /// If the work is cancelled.
     pub fn settle(&self, heights: &mut Grid, progress: &Progress) -> Result<()> {
         progress.check()?;
-        let mut last = self.erosion;
+        let mut law = self.erosion.law;
         if let Some(points) = &self.points {
             points.onto_lattice(heights, &self.outlets, self.ground.bedding.is_some());
             // The limit on slopes was already applied between the points; applying it on the lattice would create
             // facets.
-            last.law.max_slope = f64::INFINITY;
+            law.max_slope = f64::INFINITY;
         }
         let ground = Substrate { bedding: self.bedding(self.done), ..*self.ground };
-        last.cut(heights, &self.outlets, &ground, Descent::Steepest, 0.0, progress)
+        let [routing, counting, solving] = progress.parts([3.0, 1.0, 1.0]);
+        let receivers = match self.deposits {
+            None => drainage::route_carving_with(heights, &self.outlets, Descent::Steepest, &routing)?.receivers,
+            Some(_) => {
+                // On level floors a slope along receivers would make steps between neighboring rivers.
+                law.min_slope = law.min_slope.min(LEVEL_SLOPE);
+                // What slides here would be no sediment.
+                law.max_slope = f64::INFINITY;
+                drainage::route_shallow_with(heights, &self.outlets, ErosionRun::KEPT_DEPTH, &routing)?
+            }
+        };
+        routing.finish();
+        let drained = accumulate_rain_with(&receivers, ground.rain, &counting)?;
+        counting.finish();
+        progress.check()?;
+        law.step_with(heights, &receivers, &drained, &ground, 0.0, &solving)?;
+        progress.check()
+    }
+
+    /// The sediment so far; `None` if rivers only erode.
+    #[must_use]
+    pub fn deposits(&self) -> Option<&Deposits> {
+        self.deposits.as_ref()
     }
 
     /// The strata after a number of steps.
@@ -200,7 +231,7 @@ mod tests {
     use crate::strata::{Strata, Stratum};
 
     fn erosion() -> Erosion {
-        Erosion { law: StreamPower::default(), creep: 1e-6, years: 1e5, steps: 4, scattered: Some(1), jitter: 0.0 }
+        Erosion { creep: 1e-6, scattered: Some(1), ..Erosion::new(StreamPower::default(), 1e5, 4) }
     }
 
     fn eroded(heights: &Grid, erosion: &Erosion, sea: Option<f32>) -> Grid {
@@ -273,7 +304,7 @@ mod tests {
         let heights = samples::hills(160, 160, 3);
         let aligned = |jitter: f64| {
             let law = StreamPower { uplift: 1.0, erodibility: 1e-6, max_slope: 0.8, ..StreamPower::default() };
-            let run = Erosion { law, jitter, years: 1e6, steps: 60, creep: 1e-6, scattered: Some(1) };
+            let run = Erosion { jitter, creep: 1e-6, scattered: Some(1), ..Erosion::new(law, 1e6, 60) };
             let out = eroded(&heights, &run, None);
             let mut bins = [0u32; 9];
             for j in 10..150 {
@@ -309,7 +340,7 @@ mod tests {
         }
         let strata = Strata::new(strata, false, libm::tan(35f64.to_radians())).unwrap();
         let law = StreamPower { uplift: 0.0, max_slope: libm::tan(35f64.to_radians()), ..StreamPower::default() };
-        let run = Erosion { law, years: 2e5, steps: 40, creep: 0.0, scattered: Some(1), jitter: 1.0 };
+        let run = Erosion { scattered: Some(1), jitter: 1.0, ..Erosion::new(law, 2e5, 40) };
         let substrate = Substrate::default().with_bedding(Some(Bedding::new(&strata, Some(&top))));
         run.run(&mut heights, &substrate, None, &Progress::none()).unwrap();
         (heights, top)

@@ -12,6 +12,8 @@ pub mod breach;
 #[doc(hidden)]
 pub mod creep;
 #[doc(hidden)]
+pub mod deposition;
+#[doc(hidden)]
 pub mod direction;
 #[doc(hidden)]
 pub mod drainage;
@@ -35,6 +37,7 @@ pub mod receivers;
 pub mod rivers;
 #[doc(hidden)]
 pub mod samples;
+mod spread;
 #[doc(hidden)]
 pub mod statistics;
 #[doc(hidden)]

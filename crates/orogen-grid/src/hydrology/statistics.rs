@@ -263,7 +263,7 @@ mod tests {
         let mut heights = samples::rough(160, 160, 3);
         let law =
             StreamPower { area_exponent: 0.5, erodibility: 1e-2, uplift: 1e-2, max_slope: 1e9, ..Default::default() };
-        let erosion = Erosion { law, creep: 0.0, years: 2e4, steps: 150, scattered: None, jitter: 0.0 };
+        let erosion = Erosion::new(law, 2e4, 150);
         let drained =
             erosion.run(&mut heights, &Substrate::default(), None, &crate::progress::Progress::none()).unwrap();
         let receivers = drainage::over_surface(&heights, &Outlets::new(&heights, None), Descent::Steepest);

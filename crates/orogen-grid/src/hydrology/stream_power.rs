@@ -21,12 +21,11 @@ use super::accumulation::{Accumulation, UNIT_WEIGHT};
 use super::direction::{DISTANCES, strides};
 use super::points::Points;
 use super::receivers::Receivers;
-use crate::checks::{checks, never, now_and_then, steps};
+use crate::checks::{checks, never, steps};
+use crate::error;
 use crate::grid::Grid;
 use crate::progress::Progress;
-use crate::strata::Bedding;
-use crate::{error, parallel};
-use std::ops::Range;
+use crate::strata::{Bedding, Strata};
 
 /// Parameters of the stream power law.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -164,56 +163,20 @@ impl StreamPower {
         years: f64,
         check: &(impl Fn() -> Result<(), E> + Sync),
     ) -> Result<(), E> {
-        let window = *heights.window();
         let step = Step::new(self, receivers, drained, ground, years);
-        let (trunk, bands) = drained.parts();
-        let h = heights.data_mut();
-        for c in trunk.iter().map(|c| *c as usize) {
-            let receiver = receivers.of(c);
-            if receiver != c {
-                h[c] = step.height(c, h[c], h[receiver]);
-            }
-        }
-        let mut rest = h;
-        let mut shares = Vec::with_capacity(bands.len());
-        let mut above = Vec::new();
-        for band in bands {
-            let cells = band.cells.len().min(rest.len());
-            let (own, after) = std::mem::take(&mut rest).split_at_mut(cells);
-            // Cells beyond the band's ends are read only if they belong to the trunk, whose heights are already known.
-            let below = after[..window.width.min(after.len())].to_vec();
-            let last = own[own.len().saturating_sub(window.width)..].to_vec();
-            shares.push((band, own, std::mem::replace(&mut above, last), below));
-            rest = after;
-        }
-        parallel::try_for_each(shares, |(band, own, above, below)| {
-            let Range { start, end } = band.cells;
-            for (k, c) in band.order.iter().map(|c| *c as usize).enumerate() {
-                now_and_then(k, check)?;
-                let receiver = receivers.of(c);
-                if receiver != c {
-                    let beneath = match receiver {
-                        r if r < start => above[r + above.len() - start],
-                        r if r >= end => below[r - end],
-                        r => own[r - start],
-                    };
-                    own[c - start] = step.height(c, own[c - start], beneath);
-                }
-            }
-            Ok(())
-        })
+        drained.downstream(receivers, heights, check, |c, before, receiver| step.height(c, before, receiver))
     }
 }
 
 /// The parts of a step that are common to all cells.
-struct Step<'a> {
+pub(super) struct Step<'a> {
     codes: &'a [u8],
     area: &'a [u32],
     discharge: Option<&'a [u64]>,
     erodibility_factor: Option<&'a [f32]>,
     uplift_factor: Option<&'a [f32]>,
     powers: Powers,
-    slope_exponent: f64,
+    pub(super) slope_exponent: f64,
     /// For each direction: the product of years, erodibility and distance to the power -n, and the minimum and maximum
     /// height above the receiver.
     factors: [[f64; 3]; 8],
@@ -228,7 +191,7 @@ struct Step<'a> {
 }
 
 impl<'a> Step<'a> {
-    fn new(
+    pub(super) fn new(
         law: &StreamPower,
         receivers: &'a Receivers,
         drained: &'a Accumulation,
@@ -265,11 +228,24 @@ impl<'a> Step<'a> {
     /// The height of cell `c` after the step, from its previous height and the receiver's new height.
     #[inline(always)]
     fn height(&self, c: usize, before: f32, receiver: f32) -> f32 {
+        let terms = self.terms(c);
+        let below = f64::from(receiver);
+        let above = f64::from(before) + terms.risen - below;
+        let [left, most] = self.left(&terms, above, below, terms.cut);
+        // A landslide limit below the minimum slope is raised to it. NaN counts as the limit, as with `min`.
+        let left = if left < most { left } else { most };
+        drained(below + if left > terms.least { left } else { terms.least }, receiver)
+    }
+
+    /// What the law has for cell `c`.
+    #[inline(always)]
+    pub(super) fn terms(&self, c: usize) -> Terms<'_> {
         let code = self.codes[c] & 7;
         let [mut factor, mut least, mut most] = self.factors[usize::from(code)];
+        let mut away = DISTANCES[usize::from(code)];
         if let Some((points, strides)) = &self.points {
             let inverse_distance = f64::from(points.inverse_distance(c, code, strides));
-            let away = 1.0 / inverse_distance;
+            away = 1.0 / inverse_distance;
             factor *= if self.slope_exponent == 1.0 {
                 inverse_distance
             } else {
@@ -278,42 +254,72 @@ impl<'a> Step<'a> {
             (least, most) = (least * away, most * away);
         }
         let erodibility_factor = self.erodibility_factor.map_or(1.0, |factors| f64::from(factors[c]).max(0.0));
-        let uplift_factor = self.uplift_factor.map_or(1.0, |factors| f64::from(factors[c]));
-        let below = f64::from(receiver);
-        let above = f64::from(before) + self.risen * uplift_factor - below;
         let power = match self.discharge {
             Some(discharge) => self.powers.of_discharge(discharge[c]),
             None => self.powers.of(self.area[c]),
         };
+        let uplift_factor = self.uplift_factor(c);
         let cut = factor * erodibility_factor * power;
         let bottom = self.bedding.and_then(|bedding| Some((bedding.strata, bedding.bottom(c, uplift_factor)?)));
-        let left = match bottom {
-            None => self.left(above, cut),
-            Some((strata, bottom)) => {
-                let foot = below - bottom;
-                if self.is_limited {
-                    let away = match &self.points {
-                        Some((points, strides)) => 1.0 / f64::from(points.inverse_distance(c, code, strides)),
-                        None => DISTANCES[usize::from(code)],
-                    };
-                    most = strata.stable(foot, away * self.cell);
-                }
-                let law = [cut, self.slope_exponent];
-                strata.eroded(foot + above, foot, law, |above, cut| self.left(above, cut))
-            }
-        };
-        // A landslide limit below the minimum slope is raised to it. NaN counts as the limit, as with `min`.
-        let left = if left < most { left } else { most };
-        let new = (below + if left > least { left } else { least }) as f32;
-        // In f32 the minimum slope may be rounded away, but the cell must drain.
-        if new > receiver { new } else { receiver.next_up() }
+        Terms { cut, least, most, risen: self.risen * uplift_factor, bottom, away: away * self.cell }
     }
 
-    /// The drop that remains of a drop after the step.
     #[inline(always)]
-    fn left(&self, above: f64, cut: f64) -> f64 {
+    fn uplift_factor(&self, c: usize) -> f64 {
+        self.uplift_factor.map_or(1.0, |factors| f64::from(factors[c]))
+    }
+
+    /// The water that drains through cell `c`, in cells.
+    #[inline(always)]
+    pub(super) fn water(&self, c: usize) -> f64 {
+        match self.discharge {
+            Some(discharge) => discharge[c] as f64 / f64::from(UNIT_WEIGHT),
+            None => f64::from(self.area[c]),
+        }
+    }
+
+    /// The drop that remains after the step of a drop to a receiver of the height `below`, and its maximum.
+    #[inline(always)]
+    pub(super) fn left(&self, terms: &Terms, above: f64, below: f64, cut: f64) -> [f64; 2] {
+        match terms.bottom {
+            None => [self.left_of(above, cut), terms.most],
+            Some((strata, bottom)) => {
+                let foot = below - bottom;
+                let most = if self.is_limited { strata.stable(foot, terms.away) } else { terms.most };
+                let law = [cut, self.slope_exponent];
+                [strata.eroded(foot + above, foot, law, |above, cut| self.left_of(above, cut)), most]
+            }
+        }
+    }
+
+    /// [`Step::left`] of uniform rock.
+    #[inline(always)]
+    fn left_of(&self, above: f64, cut: f64) -> f64 {
         if self.slope_exponent == 1.0 { above / (1.0 + cut) } else { solve_newton(above, cut, self.slope_exponent) }
     }
+}
+
+/// What the law has for a cell.
+pub(super) struct Terms<'a> {
+    /// The coefficient of the equation for the drop x that remains of a drop: x + cut x^n = drop.
+    pub cut: f64,
+    /// The minimum height above the receiver.
+    pub least: f64,
+    /// The maximum height above the receiver, without strata.
+    most: f64,
+    /// Uplift of the step, in metres.
+    pub risen: f64,
+    /// The layers of rock, and their bottom.
+    bottom: Option<(&'a Strata, f64)>,
+    /// The distance to the receiver, in metres.
+    pub away: f64,
+}
+
+/// A height as f32 that is above the receiver's. In f32 the minimum slope may be rounded away, but the cell must drain.
+#[inline(always)]
+pub(super) fn drained(height: f64, receiver: f32) -> f32 {
+    let new = height as f32;
+    if new > receiver { new } else { receiver.next_up() }
 }
 
 /// Solves x + cut x^n = above for x, the remaining drop after the step, where n is not 1.

@@ -6,11 +6,12 @@ const ERODIBILITY = 1u;
 const UPLIFT = 2u;
 const FLOW = 6u;
 const CHANGE = 7u;
-const POINT = 16u;
+const SEDIMENT = 8u;
+const POINT = 17u;
 // The piece of the law that applies to each cell.
 const PIECE = CHANGE;
 // The factor and the offset of a piece; two sets of planes.
-const AFFINE = 19u;
+const AFFINE = 20u;
 
 const FREE = 1u;
 const LIMITED = 2u;
@@ -286,4 +287,5 @@ fn finish(base: u32, at: vec2<i32>) {
     set_word(HEIGHT, cell, height);
     set_sample(FLOW, cell, discharge(base, cell) * cell_area(base));
     set_sample(CHANGE, cell, bitcast<f32>(height) - sample(SOURCE, cell));
+    set_sample(SEDIMENT, cell, 0.0);
 }

@@ -3,6 +3,7 @@
     ("alpine", include_bytes!("../../assets/presets/alpine.png")),
     ("archipelago", include_bytes!("../../assets/presets/archipelago.png")),
     ("badlands", include_bytes!("../../assets/presets/badlands.png")),
+    ("basin", include_bytes!("../../assets/presets/basin.png")),
     ("biomes", include_bytes!("../../assets/presets/biomes.png")),
     ("canyon", include_bytes!("../../assets/presets/canyon.png")),
     ("caves", include_bytes!("../../assets/presets/caves.png")),
