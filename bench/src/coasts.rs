@@ -3,7 +3,7 @@
 
 use orogen::Grid;
 
-use crate::land::{Request, heights, name, parse, quantile, sorted};
+use crate::land::{Request, grid, name, parse, quantile, sorted};
 
 /// Cell in metres that sources have without `--cell`.
 const CELL: f64 = 30_720.0;
@@ -29,7 +29,8 @@ pub fn run(args: &[String]) -> Result<(), String> {
     println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|");
     for source in &request.sources {
         let window = request.window.or(source.starts_with("endless").then_some([-SIDE / 2, -SIDE / 2, SIDE, SIDE]));
-        let heights = heights(source, &Request { cell: request.cell.or(Some(CELL)), window, ..request.clone() })?;
+        let request = Request { cell: request.cell.or(Some(CELL)), window, ..request.clone() };
+        let heights = grid(source, &request, "height")?;
         let coast = Coast::new(&heights);
         let land =
             sorted(heights.data().iter().filter(|height| **height > 0.0).map(|height| f64::from(*height)).collect());

@@ -184,7 +184,7 @@ fn parse(args: &[String]) -> Result<Options> {
             flag if flag.starts_with('-') => return Err(Failure::usage(format!("there is no option '{flag}'"))),
             other => {
                 return Err(Failure::usage(format!(
-                    "there is no area '{other}'; there are: {}, {COASTS}, {REALISM}, {VALLEYS}, {WATER}",
+                    "there is no area '{other}'; there are: {}, {COASTS}, {FANS}, {REALISM}, {VALLEYS}, {WATER}",
                     AREAS.join(", ")
                 )));
             }
