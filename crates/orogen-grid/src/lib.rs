@@ -63,6 +63,8 @@ pub mod analysis;
 pub mod autotile;
 mod checks;
 pub mod climate;
+#[doc(hidden)]
+pub mod coast;
 pub mod contour;
 #[doc(hidden)]
 pub mod craters;

@@ -85,6 +85,7 @@ nodes! {
     solver {
         Bake,
         Breach,
+        Coast,
         Dla,
         Drainage,
         Dunes,

@@ -3,6 +3,7 @@
 // The list below is written by `cargo xtask codegen`.
 mod bake;
 mod breach;
+mod coast;
 mod dla;
 mod drainage;
 mod dunes;
@@ -22,6 +23,7 @@ mod viewshed;
 
 pub use bake::Bake;
 pub use breach::{Breach, BreachRoute};
+pub use coast::Coast;
 pub use dla::Dla;
 pub use drainage::{DepressionRouting, Drainage};
 pub use dunes::Dunes;

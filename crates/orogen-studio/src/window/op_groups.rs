@@ -72,6 +72,7 @@ pub static ALL: [OpGroup; 9] = [
             "glaciers",
             "dunes",
             "lava",
+            "coast",
         ],
     ),
     group(

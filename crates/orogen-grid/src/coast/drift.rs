@@ -1,0 +1,252 @@
+//! Sand that waves move along the shore.
+
+use super::Coast;
+use super::beach::Section;
+use super::climate::Climate;
+use crate::contour::trace::contours;
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+use crate::progress::Progress;
+use std::collections::VecDeque;
+
+/// Distance between nodes, in cells.
+const SPACING: f64 = 2.5;
+/// Angles of the shore at which transport is computed, in radians: transport is linear between them.
+const TURN: f64 = 0.25;
+/// Largest angle between the shore and the waves that counts, in radians.
+const OBLIQUE: f64 = 0.3;
+/// Largest angle of a beach to the shore behind it, in radians.
+const STEEPEST: f64 = 0.9;
+/// Bends of the shore shorter than this are not in the sea floor before it, in metres.
+const REFRACTED: f64 = 900.0;
+/// Share of the stable step of the diffusion.
+const STEP: f64 = 0.2;
+/// Most steps.
+const MAX_STEPS: f64 = 20_000.0;
+/// No cell.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// A place on the shore.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Node {
+    /// Cells east and south of the first sample.
+    pub(super) at: [f64; 2],
+    /// Unit vector out to sea.
+    pub(super) out: [f64; 2],
+    /// Distance to the next node, in metres.
+    pub(super) length: f64,
+    /// Length of the whole line, or infinity if it leaves the window, in metres.
+    pub(super) line: f64,
+    /// The node before and after along the line.
+    pub(super) ends: [usize; 2],
+}
+
+/// The shore as lines of nodes.
+pub(super) struct Nodes {
+    pub(super) nodes: Vec<Node>,
+    /// The nearest node of each cell, or [`NONE`].
+    pub(super) nearest: Vec<u32>,
+}
+
+impl Nodes {
+    /// Nodes along the line where `shore` is 0; it is positive on land.
+    pub(super) fn new(window: &Window, shore: &[f32], reach: usize) -> Result<Nodes> {
+        let limit = 2.0 * window.cell as f32;
+        // Positions count from the window, so that precision does not depend on its place.
+        let local = Window::new(window.width, window.height, 1.0);
+        let data = shore.iter().map(|shore| if *shore > 0.0 { shore.min(limit) } else { shore.clamp(-limit, -1e-6) });
+        let mut nodes = Vec::new();
+        if let Some(grid) = Grid::from_data(local, data.collect()) {
+            for line in contours(&grid, &[0.0])? {
+                let path: Vec<[f64; 2]> = line.path().collect();
+                resample(&path, line.closed, window.cell, &mut nodes);
+            }
+        }
+        let nearest = nearest(window, &nodes, reach);
+        Ok(Nodes { nodes, nearest })
+    }
+}
+
+/// Adds evenly spaced nodes of a line.
+fn resample(path: &[[f64; 2]], closed: bool, cell: f64, nodes: &mut Vec<Node>) {
+    let between = |[ax, ay]: [f64; 2], [bx, by]: [f64; 2]| ((bx - ax) * (bx - ax) + (by - ay) * (by - ay)).sqrt();
+    let total: f64 = path.windows(2).map(|pair| between(pair[0], pair[1])).sum();
+    let count = (total / SPACING) as usize;
+    if count < 4 {
+        return;
+    }
+    let line = if closed { total * cell } else { f64::INFINITY };
+    let first = nodes.len();
+    let step = total / count as f64;
+    let (mut gone, mut next) = (0.0, 0.5 * step);
+    let mut points: Vec<[f64; 2]> = Vec::with_capacity(count);
+    for pair in path.windows(2) {
+        let length = between(pair[0], pair[1]);
+        while next <= gone + length && points.len() < count {
+            let share = (next - gone) / length.max(f64::MIN_POSITIVE);
+            points.push([0, 1].map(|k| pair[0][k] + share * (pair[1][k] - pair[0][k])));
+            next += step;
+        }
+        gone += length;
+    }
+    let count = points.len();
+    let beside = |k: usize, by: isize| {
+        let at = k as isize + by;
+        if closed { at.rem_euclid(count as isize) as usize } else { at.clamp(0, count as isize - 1) as usize }
+    };
+    for (k, at) in points.iter().enumerate() {
+        let (from, to) = (points[beside(k, -2)], points[beside(k, 2)]);
+        let [x, y] = [to[0] - from[0], to[1] - from[1]];
+        let length = (x * x + y * y).sqrt().max(f64::MIN_POSITIVE);
+        // Land is to the left of the line with north up, so the sea is to the right.
+        let out = [-y / length, x / length];
+        let ends = [first + beside(k, -1), first + beside(k, 1)];
+        nodes.push(Node { at: *at, out, length: step * cell, line, ends });
+    }
+}
+
+/// The nearest node of each cell, by steps from cell to cell, up to `reach` cells away.
+fn nearest(window: &Window, nodes: &[Node], reach: usize) -> Vec<u32> {
+    let mut nearest = vec![NONE; window.len()];
+    let mut queue = VecDeque::new();
+    for (k, node) in nodes.iter().enumerate() {
+        let cell = cell_of(window, node.at);
+        if nearest[cell] == NONE {
+            nearest[cell] = k as u32;
+            queue.push_back((cell, 0));
+        }
+    }
+    while let Some((cell, steps)) = queue.pop_front() {
+        if steps >= reach {
+            continue;
+        }
+        for next in super::march::neighbors(window, cell).into_iter().flatten() {
+            if nearest[next] == NONE {
+                nearest[next] = nearest[cell];
+                queue.push_back((next, steps + 1));
+            }
+        }
+    }
+    nearest
+}
+
+/// The cell nearest to a position in cells.
+pub(super) fn cell_of(window: &Window, [x, y]: [f64; 2]) -> usize {
+    let nearest = |at: f64, side: usize| (at + 0.5).clamp(0.0, side as f64 - 1.0) as usize;
+    nearest(y, window.height) * window.width + nearest(x, window.width)
+}
+
+/// Transport along the shore at each node, for a shore turned by -[`TURN`], 0 and [`TURN`], by the CERC formula in
+/// terms of waves in deep water, Q ~ H^(12/5) T^(1/5) cos(phi)^(6/5) sin(phi) (Ashton and Murray 2006).
+pub(super) fn transport(
+    window: &Window,
+    nodes: &Nodes,
+    shore: &[f32],
+    climate: &Climate,
+    progress: &Progress,
+) -> Result<Vec<[f64; 3]>> {
+    // Waves are those of the water in front of a node.
+    let place = |node: &Node| {
+        let ahead = |far: f64| cell_of(window, [0, 1].map(|k| node.at[k] + far * node.out[k]));
+        [2.0, 1.0, 0.5].into_iter().map(ahead).find(|cell| shore[*cell] <= 0.0)
+    };
+    let places: Vec<Option<usize>> = nodes.nodes.iter().map(place).collect();
+    let turns = [-TURN, 0.0, TURN].map(|turn| [libm::cos(turn), libm::sin(turn)]);
+    let mut sums = vec![[0.0f64; 3]; nodes.nodes.len()];
+    climate.each(window, shore, progress, |_, wind, fetch| {
+        for ((node, place), sum) in nodes.nodes.iter().zip(&places).zip(&mut sums) {
+            let Some(place) = place else { continue };
+            let power = wind.share * f64::from(climate.waves.of(fetch[*place])[1]);
+            // Along the line, with the sea to the right: out is (-y, x) of the tangent.
+            let along = [node.out[1], -node.out[0]];
+            for (sum, [cos, sin]) in sum.iter_mut().zip(turns) {
+                // A shore that turns seaward along the line.
+                let out = [0, 1].map(|k| node.out[k] * cos - along[k] * sin);
+                let tangent = [0, 1].map(|k| along[k] * cos + node.out[k] * sin);
+                let facing = out[0] * wind.from[0] + out[1] * wind.from[1];
+                if facing > 0.0 {
+                    let aside = tangent[0] * wind.from[0] + tangent[1] * wind.from[1];
+                    *sum -= power * libm::pow(facing, 1.2) * aside;
+                }
+            }
+        }
+    })?;
+    Ok(sums)
+}
+
+/// Angles from the shore at each node to its course over some distance, positive towards the sea.
+///
+/// Waves feel the sea floor long before the shore, and the floor has only the large bends of the shore. So waves turn
+/// towards headlands and carry their sand into bays (refraction, simplified).
+fn bends(nodes: &[Node]) -> Vec<f64> {
+    let tangent = |node: &Node| [node.out[1], -node.out[0]];
+    let mean = |(k, node): (usize, &Node)| {
+        let reach = (REFRACTED / node.length) as usize;
+        let mut sum = tangent(node);
+        for side in 0..2 {
+            let mut at = k;
+            for step in 0..reach {
+                let next = nodes[at].ends[side];
+                if next == at || next == k {
+                    break;
+                }
+                at = next;
+                let weight = 1.0 - (step + 1) as f64 / (reach + 1) as f64;
+                sum = [0, 1].map(|axis| sum[axis] + weight * tangent(&nodes[at])[axis]);
+            }
+        }
+        let own = tangent(node);
+        let seaward = sum[0] * node.out[0] + sum[1] * node.out[1];
+        libm::atan2(seaward, sum[0] * own[0] + sum[1] * own[1])
+    };
+    nodes.iter().enumerate().map(mean).collect()
+}
+
+/// Sand at each node, in m^3, after it has moved along the shore.
+///
+/// A line of shore (Pelnard-Considère 1956): sand of volume S moves the shore out by w = S / (length D) over a profile
+/// D metres high. Sand moves until the shore is at right angles to the mean waves, as far as it reaches. Every edge
+/// takes its own steps of time, so what counts is the angle that transport seeks.
+pub(super) fn run(law: &Coast, nodes: &[Node], transport: &[[f64; 3]], sections: &[Section], sand: &mut [f64]) {
+    let Some(spacing) = nodes.first().map(|node| node.length) else { return };
+    let bends = bends(nodes);
+    // The angle towards the sea at which nothing moves along the edge behind each node.
+    let sought = |(k, node): (usize, &Node)| {
+        let next = node.ends[1];
+        let [less, none, more] = [0, 1, 2].map(|turn| 0.5 * (transport[k][turn] + transport[next][turn]));
+        let change = (more - less) / (2.0 * TURN);
+        let strength = (-change).max(0.3 * none.abs()).max(1e-12);
+        let waves = (none / strength).clamp(-OBLIQUE, OBLIQUE);
+        (bends[k] + waves).clamp(-STEEPEST, STEEPEST)
+    };
+    let sought: Vec<f64> = nodes.iter().enumerate().map(sought).collect();
+    let depth: Vec<f64> = sections.iter().map(Section::depth).collect();
+    let most: Vec<f64> = sections.iter().zip(nodes).map(|(section, node)| section.most() * node.length).collect();
+    let far = law.reach / spacing;
+    let steps = (far * far / (2.0 * STEP)).clamp(0.0, MAX_STEPS) as usize;
+    let mut moved = vec![0.0; nodes.len()];
+    let out = |k: usize, sand: &[f64]| sand[k] / (nodes[k].length * depth[k]);
+    for _ in 0..steps {
+        for (k, node) in nodes.iter().enumerate() {
+            let next = node.ends[1];
+            if next == k {
+                moved[k] = 0.0;
+                continue;
+            }
+            let turned = ((out(next, sand) - out(k, sand)) / node.length).clamp(-1.5, 1.5);
+            // Where the shore turns seaward along the line, sand runs back.
+            let angle = sought[k] - turned;
+            let from = if angle > 0.0 { k } else { next };
+            let wanted = STEP * angle * node.length * node.length * depth[from];
+            moved[k] = wanted.clamp(-0.4 * sand[from], 0.4 * sand[from]);
+        }
+        for (k, node) in nodes.iter().enumerate() {
+            if node.ends[1] != k {
+                sand[k] -= moved[k];
+                sand[node.ends[1]] += moved[k];
+            }
+        }
+        // What a beach cannot hold is lost to deep water.
+        sand.iter_mut().zip(&most).for_each(|(sand, most)| *sand = sand.min(*most));
+    }
+}
