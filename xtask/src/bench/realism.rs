@@ -107,6 +107,7 @@ const CASES: &[Case] = &[
     case("mesa", Made::World(30), &[land("canyons")]),
     // Among the deserts is the basin of Guadix and Baza, which is badlands.
     case("badlands", Made::World(30), &[land("deserts")]),
+    case("basin", Made::World(60), &[land("deserts")]),
 ];
 
 /// Presets that no real land at the cells of the script is like, and why.

@@ -1,8 +1,8 @@
 //! Beaches: sand on the rock, with the profile of Dean (1977) below the water and a berm above.
 
 use super::Coast;
-use super::drift::{self, NONE, Node, Nodes};
 use super::march::{Start, march, neighbors};
+use super::nodes::{NONE, Node, Nodes, cell_of};
 use super::retreat::{self, Shore};
 use crate::grid::Window;
 
@@ -192,7 +192,7 @@ impl Section {
             let distance = k * step;
             k += 1.0;
             let at = [0, 1].map(|axis| node.at[axis] + distance / window.cell * node.out[axis]);
-            let cell = drift::cell_of(window, at);
+            let cell = cell_of(window, at);
             let outside = at[0] < 0.0 || at[1] < 0.0;
             let beyond = at[0] > window.width as f64 - 1.0 || at[1] > window.height as f64 - 1.0;
             // The first samples may be on land.

@@ -9,6 +9,7 @@ mod climate;
 mod drift;
 mod fetch;
 mod march;
+mod nodes;
 mod retreat;
 mod rock;
 mod waves;
@@ -23,7 +24,7 @@ use crate::hydrology::steepest::Descent;
 use crate::progress::Progress;
 use beach::{Sand, Section};
 use climate::Climate;
-use drift::Nodes;
+use nodes::Nodes;
 use retreat::Shore;
 use rock::Profile;
 

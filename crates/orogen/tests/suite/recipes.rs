@@ -249,7 +249,8 @@ fn break_texts(rounds: usize) {
         if let Ok(text) = String::from_utf8(bytes)
             && let Ok(recipe) = Recipe::parse(&text, "fuzz")
         {
-            assert!(Recipe::parse(&recipe.to_toml(), "again").is_ok_and(|again| again == recipe));
+            let written = recipe.to_toml();
+            assert!(Recipe::parse(&written, "again").is_ok_and(|again| again == recipe), "{text}\n{written}");
         }
     }
 }
