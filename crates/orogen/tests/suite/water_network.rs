@@ -46,7 +46,7 @@ fn quarters(window: &Window) -> Vec<Window> {
 fn windows() -> Vec<Window> {
     vec![
         Window::new(300, 300, 60.0),
-        Window::new(240, 240, 960.0).at(20, -240),
+        Window::new(240, 240, 960.0).at(-40, -240),
         Window::new(200, 160, 7680.0).at(-120, -100),
         Window::new(200, 200, 1000.0).at(60, -60),
         Window::new(160, 160, 25.0).at(-80, 60),
@@ -117,7 +117,7 @@ fn beds_never_rise_and_reaches_join() {
         (
             "continent",
             vec![
-                Window::new(256, 256, 15360.0),
+                Window::new(500, 500, 3840.0).at(250, 300),
                 Window::new(512, 512, 7680.0),
                 Window::new(200, 200, 60.0).at(30000, 30000),
             ],
