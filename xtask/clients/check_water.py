@@ -165,7 +165,7 @@ def rivers_continue(name, rivers, lines):
 
 
 # Mountains, a coast, the land around a large lake and large rivers.
-for case in [("mountains", 0, 0, 200, 60), ("coast", -200, -200, 200, 960), ("lake", 4670, 560, 240, 240), ("rivers", -150, -150, 150, 7680)]:
+for case in [("mountains", 0, 0, 200, 60), ("coast", -200, -200, 200, 960), ("lake", -1536, -1432, 240, 240), ("rivers", -150, -150, 150, 7680)]:
     halves(*case)
 
 # The last column is the minimum share of banks above their river.
