@@ -201,7 +201,7 @@ impl Links {
         for q in parent.inner(1) {
             used[q] |= 1 << heir(parent, q);
             let link = self.list[q];
-            if link.kept && drains(parent.receiver[q]) && parent.receiver[q] & 1 == 0 {
+            if link.kept && drains(parent.receiver[q]) {
                 used[q] |= 1 << link.exit;
                 used[self.target(parent, q)] |= 1 << link.entry;
             }

@@ -18,7 +18,7 @@ drained_op! {
     /// land, unless `sea` is set.
     ///
     /// Related: terrain amplification (Schott and others 2024), hydrology-based terrain (Génevaux and others 2013).
-    pub struct Amplify = "amplify", levelled, revision 4;
+    pub struct Amplify = "amplify", levelled, revision 5;
     inputs {
         /// Heights of the coarse land without depressions. It is read at the coarsest cell, `cell` times 2 to the power
         /// of `halvings`: solve it there.

@@ -20,7 +20,7 @@ drained_op! {
     ///
     /// Related: hydrology-based terrain (Génevaux and others 2013), Dendry (Gaillard and others 2019), multi-scale
     /// terrain amplification (Schott and others 2024).
-    pub struct Continents = "continents", levelled, revision 5;
+    pub struct Continents = "continents", levelled, revision 6;
     inputs {
         /// Distance to the shore in metres, positive on land, in place of the op's own continents. Lakes and rivers
         /// keep their own water; rivers end in its sea or, where a coarse level saw a sea that is not there, in a lake.

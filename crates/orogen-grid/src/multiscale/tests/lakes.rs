@@ -101,3 +101,17 @@ fn without_lakes_no_bit_changes() {
     let of = |land: &Continents| bits(&level(land, 5, &window(land, 5, coast(5), (60, 60))));
     assert!(of(&with) == of(&without), "lakes begin at level 5");
 }
+
+#[test]
+fn links_that_cross_at_a_corner_do_not_share_a_node() {
+    // On the finest level of valleys hillsides may drain across rivers.
+    let land = land();
+    for (x, y) in [(46023, 89223), (41304, 11817)] {
+        let level = level(&land, 12, &window(&land, 12, (x - 20, y - 20), (40, 40)));
+        for q in 0..level.window.len() {
+            let Some(to) = receiver(&level, q) else { continue };
+            let is_level = level.receiver[to] >= LAKE && level.height[q] == level.height[to];
+            assert!(is_level || level.height[q] > level.height[to], "a link rises at {:?}", level.place(q));
+        }
+    }
+}

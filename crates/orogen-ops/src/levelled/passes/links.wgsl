@@ -54,7 +54,7 @@ fn occupy(base: u32, at: vec2<i32>) {
     for (var k = 0; k < 9; k += 1) {
         let near = near_cell(at, k);
         let code = above(RECEIVER, near);
-        if (!is_inner(near) || !drains(code) || (u32(code) & 1u) != 0u) {
+        if (!is_inner(near) || !drains(code)) {
             continue;
         }
         let link = link_in(DIRECT, near);
