@@ -289,8 +289,8 @@ fn misses(case: &Case, beside: &Beside, score: &Score) -> Vec<String> {
 
 fn make(program: &Path, case: &Case, seed: u64, file: &Path) -> Result {
     let mut command = shell::program(program);
-    // Models of real heights have the surface of lakes and of the sea, not their beds.
-    command.args(["export", case.preset, "--quiet", "--layer", "surface", "--seed", &seed.to_string()]);
+    let layer = layer(case.preset)?;
+    command.args(["export", case.preset, "--quiet", "--layer", layer, "--seed", &seed.to_string()]);
     let corner = match case.made {
         Made::From(at) => Some(at),
         Made::Highest(at) => Some(highest(program, case, seed, at)?.map(|index| index - i64::from(SIDE) / 2)),
@@ -302,6 +302,14 @@ fn make(program: &Path, case: &Case, seed: u64, file: &Path) -> Result {
         (None, _) => &mut command,
     };
     shell::run(command.arg("-o").arg(file))
+}
+
+/// The layer of a preset that is compared. Models of real heights have the surface of lakes and of the sea, not their
+/// beds.
+fn layer(preset: &str) -> Result<&'static str> {
+    let recipe = shell::root().join(format!("crates/orogen-engine/recipes/{preset}.toml"));
+    let text = std::fs::read_to_string(&recipe).map_err(|e| on_file("read", &recipe, &e))?;
+    Ok(if text.lines().any(|line| line.starts_with("surface = ")) { "surface" } else { "height" })
 }
 
 /// The sample at the highest place around a sample, found at a larger cell.
@@ -439,6 +447,12 @@ grid bias  median 0.006  max 0.035   (real 0.006, 0.014)
         };
         assert_eq!(score, expect);
         assert_eq!(read("windows 3"), None);
+    }
+
+    #[test]
+    fn presets_without_lakes_are_compared_by_their_heights() {
+        assert_eq!(layer("hills").ok(), Some("surface"));
+        assert_eq!(layer("mesa").ok(), Some("height"));
     }
 
     #[test]
