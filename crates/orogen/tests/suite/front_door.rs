@@ -34,7 +34,7 @@ fn an_export_in_one_call_is_that_of_a_job_whose_recipe_was_prepared_first() {
     let folder = TestFolder::new("front-door-export").unwrap();
     let window = Window::new(40, 30, 120.0).at(20, 20);
     // A recipe with classes and scattered objects, and layers with and without appended nodes.
-    let world = orogen::open("island").unwrap();
+    let world = orogen::open("rolling").unwrap();
     for (layer, file) in [
         ("height", "a.npy"),
         ("hillshade", "b.tif"),
@@ -44,7 +44,7 @@ fn an_export_in_one_call_is_that_of_a_job_whose_recipe_was_prepared_first() {
     ] {
         world.export(layer, &window, folder.join(file)).unwrap();
         let job = ExportJob::new(of_path(file.as_ref()).unwrap()).with_layer(layer).with_window(window);
-        let mut recipe = presets::find("island").unwrap().recipe().unwrap();
+        let mut recipe = presets::find("rolling").unwrap().recipe().unwrap();
         job.prepare(&mut recipe).unwrap();
         let expect = folder.join(format!("expect-{file}"));
         let output = OutputPolicy::default().output(&expect).unwrap();
