@@ -430,6 +430,24 @@ impl Solution {
     pub fn memory(&self) -> u64 {
         self.layers.iter().map(Raster::memory).sum::<u64>() + self.scalars.len() as u64 * 8
     }
+
+    /// Interpolates the raster of a layer.
+    pub(crate) fn read(&self, asked: &Reading, out: &mut [f32]) -> Result<()> {
+        match self.layers.get(asked.layer) {
+            Some(raster) => raster.read(asked.kind, asked.at, out),
+            None => Err(Error::new(ErrorKind::Internal, format!("a solution has no layer {}", asked.layer))),
+        }
+    }
+
+    /// Interpolates the raster of a layer. Layers with these numbers are never negative: the cubic may undershoot 0
+    /// beside what has a thickness.
+    pub(crate) fn read_positive(&self, layers: &[usize], asked: &Reading, out: &mut [f32]) -> Result<()> {
+        self.read(asked, out)?;
+        if layers.contains(&asked.layer) {
+            out.iter_mut().for_each(|value| *value = value.max(0.0));
+        }
+        Ok(())
+    }
 }
 
 /// A solver's inputs over its whole domain, computed tile by tile on request, and rasters for intermediate data.
@@ -526,10 +544,7 @@ pub trait Solver: Declared + Send + Sync {
 
     /// Computes one value per point from the solution; by default, interpolates the layer's raster.
     fn read(&self, solution: &Solution, asked: &Reading, out: &mut [f32]) -> Result<()> {
-        match solution.layers.get(asked.layer) {
-            Some(raster) => raster.read(asked.kind, asked.at, out),
-            None => Err(Error::new(ErrorKind::Internal, format!("a solution has no layer {}", asked.layer))),
-        }
+        solution.read(asked, out)
     }
 
     /// The computation of [`Solver::solve`] on a graphics card over `padded`, the window of [`Sources::padded`].

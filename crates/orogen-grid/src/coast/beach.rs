@@ -9,9 +9,9 @@ use crate::grid::Window;
 /// Slope of the dry beach.
 const FACE: f64 = 0.1;
 /// Slope of sand at the end of its body.
-const FOREFOOT: f64 = 0.5;
+pub(super) const FOREFOOT: f64 = 0.5;
 /// Length of the body of sand under water, in widths of the beach.
-const BODY: f64 = 4.0;
+pub(super) const BODY: f64 = 4.0;
 /// Depth of closure on an open coast and least depth, in metres (Hallermeier 1981).
 const CLOSURE: [f64; 2] = [8.0, 1.0];
 /// A beach narrower than this, in metres, is thinner than the profile.
@@ -133,7 +133,7 @@ fn lay_widths(law: &Coast, window: &Window, shore: &Shore, worn: &[f32], width: 
 }
 
 /// Height of sand at a distance seaward of its water line.
-fn surface(law: &Coast, scale: f64, y: f64, width: f64, exposure: f64) -> f64 {
+pub(super) fn surface(law: &Coast, scale: f64, y: f64, width: f64, exposure: f64) -> f64 {
     if y <= 0.0 {
         return (FACE * -y).min(law.berm * (0.3 + 0.7 * exposure.clamp(0.0, 1.0).sqrt()));
     }
@@ -196,7 +196,7 @@ impl Section {
             let outside = at[0] < 0.0 || at[1] < 0.0;
             let beyond = at[0] > window.width as f64 - 1.0 || at[1] > window.height as f64 - 1.0;
             // The first samples may be on land.
-            if !shore.is_sea(cell) && distance > 1.5 * window.cell {
+            if (!shore.is_sea(cell) || worn[cell] > 0.0) && distance > 1.5 * window.cell {
                 section.widest = section.widest.min(0.4 * distance);
                 return section;
             }

@@ -2,16 +2,22 @@
 //!
 //! Winds raise waves over their fetch. The power of the waves moves the shore into the land, as a front whose speed
 //! depends on the rock and on what falls down; it leaves a cliff and a platform. Sand of cliffs and rivers moves along
-//! the shore and makes beaches. All sums are in the order of cells, so the result does not depend on threads.
+//! the shore; it makes beaches, and spits, bars and tombolos in the water. All sums are in the order of cells, so the
+//! result does not depend on threads.
 
 mod beach;
 mod climate;
+mod course;
 mod drift;
 mod fetch;
+mod inlets;
 mod march;
 mod nodes;
 mod retreat;
+mod ridges;
 mod rock;
+mod spits;
+mod tombolos;
 mod waves;
 
 use crate::error::{Error, ErrorKind, Result};
@@ -24,9 +30,12 @@ use crate::hydrology::steepest::Descent;
 use crate::progress::Progress;
 use beach::{Sand, Section};
 use climate::Climate;
+use drift::Drift;
 use nodes::Nodes;
 use retreat::Shore;
+use ridges::Ridges;
 use rock::Profile;
+use spits::Drifting;
 
 /// Waves that work on a shore.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,6 +69,8 @@ pub struct Coast {
     pub berm: f64,
     /// How far sand moves along the shore, in metres.
     pub reach: f64,
+    /// Share of the sand which builds spits, bars and tombolos.
+    pub spits: f64,
 }
 
 impl Default for Coast {
@@ -80,6 +91,7 @@ impl Default for Coast {
             grain_size: 0.3,
             berm: 2.0,
             reach: 2000.0,
+            spits: 0.5,
         }
     }
 }
@@ -99,12 +111,13 @@ orogen_noise::builder!(
     with_denudation(denudation: f64),
     with_grain_size(grain_size: f64),
     with_berm(berm: f64),
-    with_reach(reach: f64)
+    with_reach(reach: f64),
+    with_spits(spits: f64)
 );
 
 /// A coast after the waves.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Worked {
+pub struct CoastLayers {
     /// Heights, in metres.
     pub height: Grid,
     /// Thickness of the sand of beaches, in metres.
@@ -126,8 +139,10 @@ pub struct Volumes {
     pub rivers: f64,
     /// Sand that came to the shore: `sand_share` of both.
     pub sand: f64,
-    /// Sand on beaches.
+    /// Sand on beaches, with spits, bars and tombolos.
     pub beach: f64,
+    /// Sand of spits, bars and tombolos as it left the shore.
+    pub spits: f64,
     /// Sand that was lost to deep water.
     pub lost: f64,
 }
@@ -135,8 +150,8 @@ pub struct Volumes {
 /// Channels through sand begin within as many cells of it.
 const BESIDE: usize = 6;
 
-/// Memory of a cell, in bytes: the grids before and after, fetches, fronts, drainage.
-const BYTES: u64 = 130;
+/// Memory of a cell, in bytes: the grids before and after, fetches, fronts, drainage, ridges.
+const BYTES: u64 = 150;
 
 impl Coast {
     /// Memory in bytes of [`Coast::run`] over a window, with its grids.
@@ -149,12 +164,12 @@ impl Coast {
     ///
     /// # Errors
     /// If the grids have different windows, or the work is cancelled.
-    pub fn run(&self, ground: &Grid, erodibility_factor: Option<&Grid>, progress: &Progress) -> Result<Worked> {
+    pub fn run(&self, ground: &Grid, erodibility_factor: Option<&Grid>, progress: &Progress) -> Result<CoastLayers> {
         let window = *ground.window();
         if erodibility_factor.is_some_and(|factor| *factor.window() != window) {
             return Err(Error::new(ErrorKind::Request, "the ground and its erodibility must have the same window"));
         }
-        progress.expect(retreat::ROUNDS as f64 + 4.0);
+        progress.expect(retreat::ROUNDS as f64 + 5.0);
         let sea = self.sea_level as f32;
         // Samples without a height are sea.
         let height: Vec<f32> =
@@ -165,13 +180,13 @@ impl Coast {
             Some(_) => 0.0,
             None => 1.0,
         };
-        let shore = retreat::retreat(self, &window, &height, factor, &climate, progress)?;
+        let mut shore = retreat::retreat(self, &window, &height, factor, &climate, progress)?;
         let profile = Profile::new(self, &window, &height, &shore);
         let worn: Vec<f32> =
             (0..height.len()).map(|cell| profile.worn(self, window.cell, &shore, &height, cell)).collect();
         drop(profile);
         progress.step(1.0)?;
-        let (sand, mut volumes) = self.beaches(ground, &height, &worn, &shore, &climate, progress)?;
+        let (sand, mut volumes) = self.beaches(ground, &height, &worn, &mut shore, &climate, progress)?;
         let with_sand = worn.iter().zip(&sand.thickness).map(|(worn, sand)| worn + sand).collect();
         let height_after = self.opened(&window, with_sand, &sand.thickness, progress)?;
         let mut beach = sand.thickness;
@@ -190,7 +205,7 @@ impl Coast {
         let after = ground.data().iter().zip(&height).zip(&height_after).map(|((ground, before), after)| {
             if after == before || !ground.is_finite() { *ground } else { after + sea }
         });
-        Ok(Worked {
+        Ok(CoastLayers {
             height: grid(after.collect())?,
             beach: grid(beach)?,
             exposure: grid(shore.exposure)?,
@@ -199,13 +214,13 @@ impl Coast {
         })
     }
 
-    /// The sand of beaches.
+    /// The sand of beaches, and of ridges in the water. Waves are then those over the water between the ridges.
     fn beaches(
         &self,
         ground: &Grid,
         height: &[f32],
         worn: &[f32],
-        shore: &Shore,
+        shore: &mut Shore,
         climate: &Climate,
         progress: &Progress,
     ) -> Result<(Sand, Volumes)> {
@@ -217,39 +232,58 @@ impl Coast {
         let nodes = Nodes::new(&window, &shore.beside, reach)?;
         let taken = height.iter().zip(worn).map(|(before, after)| f64::from(before - after).max(0.0) * area);
         volumes.worn = taken.clone().sum();
-        let rivers = self.rivers(ground, progress)?;
-        volumes.rivers = rivers.iter().map(|(_, volume)| volume).sum();
+        let mouths = self.mouths(ground, progress)?;
+        let rivers = mouths.iter().map(|(cell, basin)| (*cell, basin * self.denudation * 1e-3 * self.years));
+        volumes.rivers = rivers.clone().map(|(_, volume)| volume).sum();
         let brought = taken.enumerate().filter(|(_, volume)| *volume > 0.0).chain(rivers);
         let mut sand = beach::supply(&nodes, brought.map(|(cell, volume)| (cell, volume * self.sand_share)));
         volumes.sand = sand.iter().sum();
         progress.step(1.0)?;
-        let sections = Section::all(self, &window, shore, worn, &nodes);
-        let transport = drift::transport(&window, &nodes, &shore.beside, climate, progress)?;
-        drift::run(self, &nodes.nodes, &transport, &sections, &mut sand);
+        let drift = Drift::new(&window, &nodes, &shore.beside, climate, progress)?;
+        let mut ridges = Ridges::new(self, &window, shore, worn);
+        if self.spits > 0.0 && volumes.sand > 0.0 {
+            tombolos::build(self, &mut ridges, &nodes, &mut sand);
+            Drifting { nodes: &nodes, drift: &drift, mouths: &mouths }.build(self, &mut ridges, &mut sand);
+        }
+        let ridges = ridges.thickness;
+        volumes.spits = volumes.sand - sand.iter().sum::<f64>();
+        let bed: Vec<f32> = worn.iter().zip(&ridges).map(|(worn, ridge)| worn + ridge).collect();
+        if volumes.spits > 0.0 {
+            let built =
+                |(beside, (bed, ridge)): (&f32, (&f32, &f32))| if *ridge > 0.0 && *bed > 0.0 { 1.0 } else { *beside };
+            let land: Vec<f32> = shore.beside.iter().zip(bed.iter().zip(&ridges)).map(built).collect();
+            shore.exposure = climate.exposure(&window, &land, progress)?;
+        }
+        progress.step(1.0)?;
+        let sections = Section::all(self, &window, shore, &bed, &nodes);
+        drift::run(self, &nodes.nodes, &drift, &sections, &mut sand);
         progress.step(1.0)?;
         let held = sand.iter().zip(&nodes.nodes).zip(&sections);
         // Without a reach sand stays where it comes to the shore.
         let held: Vec<f64> = held.map(|((sand, node), section)| (sand / node.length).min(section.most())).collect();
         let volume = held.iter().zip(&nodes.nodes).map(|(held, node)| held * node.length).sum();
         let widths: Vec<f64> = held.iter().zip(&sections).map(|(held, section)| section.width(*held)).collect();
-        let sand = beach::lay(self, &window, shore, worn, &nodes, &widths, volume);
+        let mut sand = beach::lay(self, &window, shore, &bed, &nodes, &widths, volume);
+        sand.thickness.iter_mut().zip(&ridges).for_each(|(sand, ridge)| *sand += ridge);
+        let rivers = mouths.iter().filter(|(_, basin)| *basin >= spits::RIVER).map(|(cell, _)| *cell);
+        inlets::open(&window, worn, &mut sand.thickness, rivers);
         Ok((sand, volumes))
     }
 
-    /// What rivers bring to their mouths, in m^3: the denudation of their basins.
-    fn rivers(&self, ground: &Grid, progress: &Progress) -> Result<Vec<(usize, f64)>> {
+    /// The cells at which rivers end, with the areas of their basins in m^2.
+    fn mouths(&self, ground: &Grid, progress: &Progress) -> Result<Vec<(usize, f64)>> {
         let window = *ground.window();
-        if self.denudation <= 0.0 || window.is_empty() {
+        if window.is_empty() || (self.denudation <= 0.0 && self.spits <= 0.0) {
             return Ok(Vec::new());
         }
         let outlets = Outlets::new(ground, Some(self.sea_level as f32));
         let part = progress.part(0.5);
         let drainage = route_carving_with(ground, &outlets, Descent::Steepest, &part)?;
         let accumulation = accumulate_with(&drainage.receivers, &progress.part(0.5))?;
-        let volume = self.denudation * 1e-3 * self.years * window.cell * window.cell;
+        let area = window.cell * window.cell;
         let cells = accumulation.area.data().iter().enumerate();
-        let mouths = cells.filter(|(cell, area)| outlets.at(*cell) && **area > 1);
-        Ok(mouths.map(|(cell, area)| (cell, f64::from(area - 1) * volume)).collect())
+        let mouths = cells.filter(|(cell, count)| outlets.at(*cell) && **count > 1);
+        Ok(mouths.map(|(cell, count)| (cell, f64::from(count - 1) * area)).collect())
     }
 
     /// Heights over the sea with channels through sand that dams a river.

@@ -22,6 +22,8 @@ pub(super) struct Node {
     pub(super) length: f64,
     /// Length of the whole line, or infinity if it leaves the window, in metres.
     pub(super) line: f64,
+    /// The first node of the line.
+    pub(super) first: usize,
     /// The node before and after along the line.
     pub(super) ends: [usize; 2],
 }
@@ -86,7 +88,7 @@ fn resample(path: &[[f64; 2]], closed: bool, cell: f64, nodes: &mut Vec<Node>) {
         // Land is to the left of the line with north up, so the sea is to the right.
         let out = [-y / length, x / length];
         let ends = [first + beside(k, -1), first + beside(k, 1)];
-        nodes.push(Node { at: *at, out, length: step * cell, line, ends });
+        nodes.push(Node { at: *at, out, length: step * cell, line, first, ends });
     }
 }
 

@@ -20,7 +20,7 @@ fn west_coast(x: f64, _: f64) -> f64 {
     (0.08 * (x - 2003.0)).max(-25.0)
 }
 
-fn run(law: &Coast, ground: &Grid) -> Worked {
+fn run(law: &Coast, ground: &Grid) -> CoastLayers {
     law.run(ground, None, &Progress::none()).unwrap()
 }
 
@@ -180,11 +180,11 @@ fn transport_keeps_the_volume() {
     assert!(nodes.nodes.len() > 60);
     let sections = vec![Section::of_depth(5.0); nodes.nodes.len()];
     let climate = Climate::new(&Coast::default());
-    let transport = drift::transport(&window, &nodes, &shore, &climate, &Progress::none()).unwrap();
+    let drift = Drift::new(&window, &nodes, &shore, &climate, &Progress::none()).unwrap();
     let mut sand = vec![0.0; nodes.nodes.len()];
     sand.iter_mut().step_by(7).for_each(|sand| *sand = 20_000.0);
     let before: f64 = sand.iter().sum();
-    drift::run(&Coast::default(), &nodes.nodes, &transport, &sections, &mut sand);
+    drift::run(&Coast::default(), &nodes.nodes, &drift, &sections, &mut sand);
     let after: f64 = sand.iter().sum();
     assert!((after / before - 1.0).abs() < 1e-9, "{before} m^3 became {after}");
     assert!(sand.iter().all(|sand| *sand >= 0.0));
@@ -246,4 +246,125 @@ fn the_result_does_not_depend_on_threads_and_can_be_cancelled() {
     let progress = Progress::none();
     progress.cancel();
     assert_eq!(Coast::default().run(&before, None, &progress).unwrap_err().kind(), ErrorKind::Cancelled);
+}
+
+/// A coast that faces west and ends at a corner, 2000 m south; a shallow sea floor.
+fn corner(x: f64, y: f64) -> f64 {
+    if x > 2003.0 && y < 2003.0 { 20.0 + 0.02 * (x - 2003.0) } else { -5.0 }
+}
+
+/// Volume of the sand above the water within a rectangle in metres: west, east, north, south.
+fn dry_sand(after: &CoastLayers, [west, east, north, south]: [f64; 4]) -> f64 {
+    let cells = after.beach.data().iter().zip(after.height.data()).enumerate();
+    let inside = cells.filter(|(k, (sand, height))| {
+        let (x, y) = ((k % after.beach.width()) as f64 * CELL, (k / after.beach.width()) as f64 * CELL);
+        **sand > 0.0 && **height > 0.0 && x >= west && x <= east && y >= north && y <= south
+    });
+    inside.map(|(_, (sand, _))| f64::from(*sand) * CELL * CELL).sum()
+}
+
+/// Waves from one side of a coast that faces west.
+fn oblique(from: f64) -> Coast {
+    Coast::default().with_wind_direction(from).with_wind_share(1.0).with_sand_share(0.5)
+}
+
+#[test]
+fn a_corner_gets_a_spit_in_the_direction_of_the_drift() {
+    let before = ground(180, 200, corner);
+    let beyond = [1400.0, 2600.0, 2150.0, 3800.0];
+    // From the north-west sand moves south.
+    let after = run(&oblique(310.0), &before);
+    let spit = dry_sand(&after, beyond);
+    assert!(spit > 1e5, "{spit} m^3 beyond the corner, {:?}", after.volumes);
+    assert!(after.volumes.spits > spit && after.volumes.spits <= 0.5 * after.volumes.sand, "{:?}", after.volumes);
+    assert!(after.volumes.beach <= 1.03 * after.volumes.sand, "{:?}", after.volumes);
+    let highest = after.beach.data().iter().zip(after.height.data()).filter(|(sand, _)| **sand > 0.0);
+    assert!(highest.map(|(_, height)| *height).fold(0.0, f32::max) <= 20.0);
+    for law in [oblique(230.0), oblique(310.0).with_spits(0.0), oblique(310.0).with_sand_share(0.0)] {
+        let other = run(&law, &before);
+        assert!(dry_sand(&other, beyond) < 0.02 * spit, "{law:?}");
+    }
+    // The mirror image.
+    let mirrored = ground(180, 200, |x, y| corner(x, 199.0 * CELL - y));
+    let other = run(&oblique(230.0), &mirrored);
+    let turned = dry_sand(&other, [beyond[0], beyond[1], 199.0 * CELL - beyond[3], 199.0 * CELL - beyond[2]]);
+    assert!((turned / spit - 1.0).abs() < 0.1, "{turned} m^3 for {spit}");
+    assert!((other.volumes.spits / after.volumes.spits - 1.0).abs() < 0.1, "{:?} {:?}", other.volumes, after.volumes);
+}
+
+/// Whether water at a place is joined to the sea at the border.
+fn is_open(after: &CoastLayers, x: f64, y: f64) -> bool {
+    let window = *after.height.window();
+    let wet = |cell: usize| after.height.data()[cell] < 0.0;
+    let start = (y / CELL) as usize * window.width + (x / CELL) as usize;
+    assert!(wet(start), "no water: {}", after.height.data()[start]);
+    let (mut seen, mut queue) = (vec![false; window.len()], vec![start]);
+    while let Some(cell) = queue.pop() {
+        for next in march::neighbors(&window, cell) {
+            match next {
+                None => return true,
+                Some(next) if wet(next) && !seen[next] => {
+                    seen[next] = true;
+                    queue.push(next);
+                }
+                Some(_) => {}
+            }
+        }
+    }
+    false
+}
+
+#[test]
+fn a_bay_gets_a_bar_and_a_lagoon_and_a_river_keeps_an_inlet() {
+    let land = |x: f64, y: f64, valley: f64| {
+        let bay = (1500.0..2100.0).contains(&y) && x < 2700.0;
+        if x > 2003.0 && !bay { 15.0 + 0.04 * (x - 2003.0) + valley * (y - 1800.0).abs() } else { -4.0 }
+    };
+    let plain = run(&oblique(310.0), &ground(200, 180, |x, y| land(x, y, 0.0)));
+    assert!(plain.volumes.spits > 0.0);
+    assert!(!is_open(&plain, 2500.0, 1800.0), "no lagoon");
+    let none = run(&oblique(310.0).with_spits(0.0), &ground(200, 180, |x, y| land(x, y, 0.0)));
+    assert!(is_open(&none, 2500.0, 1800.0));
+    let river = run(&oblique(310.0), &ground(200, 180, |x, y| land(x, y, 0.05)));
+    assert!(river.volumes.spits > 0.0);
+    assert!(is_open(&river, 2500.0, 1800.0), "the river has no inlet");
+}
+
+#[test]
+fn an_islet_close_to_a_shore_is_joined_to_it() {
+    let land = |x: f64, y: f64| {
+        let islet = 15.0 - 0.1 * (libm::hypot(x - 1500.0, 0.6 * (y - 1500.0)));
+        if x > 2003.0 { 15.0 + 0.04 * (x - 2003.0) } else { islet.max(-4.0) }
+    };
+    let law = oblique(270.0).with_retreat(0.02);
+    let joined = |law: &Coast| {
+        let after = run(law, &ground(160, 150, land));
+        let row = after.height.row(75);
+        row[(1560.0 / CELL) as usize..(2100.0 / CELL) as usize].iter().copied().fold(f32::INFINITY, f32::min)
+    };
+    assert!(joined(&law) > 0.0, "{} m", joined(&law));
+    assert!(joined(&law.with_spits(0.0)) < 0.0 && joined(&law.with_sand_share(0.0)) < 0.0);
+}
+
+#[test]
+fn ridges_take_their_sand_from_the_shore() {
+    let before = ground(180, 200, corner);
+    let (law, window) = (oblique(310.0).with_retreat(0.0), *before.window());
+    let climate = Climate::new(&law);
+    let shore = retreat::retreat(&law, &window, before.data(), |_| 1.0, &climate, &Progress::none()).unwrap();
+    let nodes = Nodes::new(&window, &shore.beside, 150).unwrap();
+    let drift = Drift::new(&window, &nodes, &shore.beside, &climate, &Progress::none()).unwrap();
+    let mut sand = vec![40_000.0; nodes.nodes.len()];
+    let mut ridges = Ridges::new(&law, &window, &shore, before.data());
+    Drifting { nodes: &nodes, drift: &drift, mouths: &[] }.build(&law, &mut ridges, &mut sand);
+    assert!(sand.iter().all(|sand| *sand >= 0.0));
+    let taken = 40_000.0 * sand.len() as f64 - sand.iter().sum::<f64>();
+    let laid: f64 = ridges.thickness.iter().map(|thickness| f64::from(*thickness) * CELL * CELL).sum();
+    assert!(laid > 1e5 && (taken / laid - 1.0).abs() < 1e-9, "{taken} m^3 taken, {laid} m^3 laid");
+    // What is taken back leaves no trace.
+    let kept = ridges.thickness.clone();
+    ridges.add(ridges::Part { at: [60.0, 120.0], lee: [1.0, 0.0], half: 60.0 });
+    assert!(ridges.volume() > 0.0 && ridges.thickness != kept);
+    ridges.undo();
+    assert!(ridges.volume() == 0.0 && ridges.thickness == kept);
 }

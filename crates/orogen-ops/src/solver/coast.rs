@@ -3,21 +3,23 @@
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Reading, Solution, Solver, Sources, WorldParams};
 use orogen_grid::coast::Coast as Law;
-use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 
 op! {
-    /// Ground after waves have worked on its shore: cliffs, shore platforms and beaches.
+    /// Ground after waves have worked on its shore: cliffs, shore platforms, beaches, spits, lagoons and tombolos.
     ///
     /// Winds from 32 directions raise waves over their fetch (Sverdrup, Munk and Bretschneider; CERC 1977). The shore
     /// retreats by their power times the erodibility, slower behind wide platforms and where high cliffs fall down, and
     /// leaves a cliff and a platform. Sand of cliffs and rivers moves along the shore as the CERC formula says, and
-    /// makes beaches with the profile h = A y^(2/3) of Dean (1977), mostly in bays. Rivers keep their way to the sea.
+    /// makes beaches with the profile h = A y^(2/3) of Dean (1977), mostly in bays. Where the shore turns away, sand
+    /// goes on into water up to 12 m deep as a spit with a recurved end; before a bay it is a bar with a lagoon. Islets
+    /// close to a shore are joined to it. Rivers keep their way to the sea, and inlets of lagoons open.
     /// Samples that waves do not reach keep their heights.
     ///
     /// The sea is what is not above `world.sea_level`, and goes on outside of the domain. Another `cell` gives similar
     /// coasts; a beach should be wider than one. Time grows with the domain, about 3 microseconds per sample.
-    pub struct Coast = "coast", solver, revision 1;
+    pub struct Coast = "coast", solver, revision 2;
     margin;
     inputs {
         /// The heights of the ground and of the sea floor.
@@ -52,13 +54,15 @@ op! {
         berm: f64 = 2.0, unit "m", range 0.0 to 20.0;
         /// How far sand moves along the shore.
         reach: f64 = 2000.0, unit "m", range 0.0 to 1e6;
+        /// Share of the sand that makes spits, bars and tombolos, each as long as `reach` at most. 0 makes none.
+        spits: f64 = 0.5, range 0.0 to 1.0;
         /// Cell size of the solution; 0 uses the world's cell.
         cell: f64 = 0.0, unit "m", range 0.0 to 1e6;
     }
     layers {
         /// Heights after the waves.
         height: height, unit "m";
-        /// Thickness of the sand of beaches.
+        /// Thickness of the sand of beaches, spits, bars and tombolos.
         beach: height, unit "m";
         /// Power of the waves over that of a straight coast that faces the main wind; 0 on land.
         exposure: height;
@@ -88,6 +92,7 @@ impl Coast {
             .with_grain_size(self.grain_size)
             .with_berm(self.berm)
             .with_reach(self.reach)
+            .with_spits(self.spits)
     }
 }
 
@@ -118,15 +123,7 @@ impl Solver for Coast {
     }
 
     fn read(&self, solution: &Solution, asked: &Reading, out: &mut [f32]) -> Result<()> {
-        let Some(layer) = solution.layers.get(asked.layer) else {
-            return Err(Error::new(ErrorKind::Internal, format!("a solution has no layer {}", asked.layer)));
-        };
-        layer.read(asked.kind, asked.at, out)?;
-        if [BEACH, EXPOSURE].contains(&asked.layer) {
-            // Interpolation by the cubic may undershoot 0 beside beaches and land.
-            out.iter_mut().for_each(|value| *value = value.max(0.0));
-        }
-        Ok(())
+        solution.read_positive(&[BEACH, EXPOSURE], asked, out)
     }
 
     fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {

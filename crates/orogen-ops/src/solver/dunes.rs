@@ -3,7 +3,7 @@
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Reading, Solution, Solver, Sources, WorldParams};
 use orogen_grid::dunes::Dunes as Law;
-use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 
 op! {
@@ -87,15 +87,7 @@ impl Solver for Dunes {
     }
 
     fn read(&self, solution: &Solution, asked: &Reading, out: &mut [f32]) -> Result<()> {
-        let Some(layer) = solution.layers.get(asked.layer) else {
-            return Err(Error::new(ErrorKind::Internal, format!("a solution has no layer {}", asked.layer)));
-        };
-        layer.read(asked.kind, asked.at, out)?;
-        if asked.layer == SAND {
-            // Interpolation by the cubic may undershoot 0 beside dunes.
-            out.iter_mut().for_each(|sand| *sand = sand.max(0.0));
-        }
-        Ok(())
+        solution.read_positive(&[SAND], asked, out)
     }
 
     fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {

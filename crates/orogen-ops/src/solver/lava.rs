@@ -2,7 +2,7 @@
 
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Reading, Solution, Solver, Sources, WorldParams};
-use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 use orogen_grid::lava::Lava as Law;
 use orogen_grid::words::number;
@@ -108,15 +108,7 @@ impl Solver for Lava {
     }
 
     fn read(&self, solution: &Solution, asked: &Reading, out: &mut [f32]) -> Result<()> {
-        let Some(layer) = solution.layers.get(asked.layer) else {
-            return Err(Error::new(ErrorKind::Internal, format!("a solution has no layer {}", asked.layer)));
-        };
-        layer.read(asked.kind, asked.at, out)?;
-        if [LAVA, ASH].contains(&asked.layer) {
-            // Interpolation by the cubic may undershoot 0 beside flows and cones.
-            out.iter_mut().for_each(|thickness| *thickness = thickness.max(0.0));
-        }
-        Ok(())
+        solution.read_positive(&[LAVA, ASH], asked, out)
     }
 
     fn lower(&self, _: &Window, _: &[bool], _: &WorldParams) -> Lowering<Passes> {

@@ -6,7 +6,7 @@ use crate::budget::memory;
 use crate::declare::{Declared, Input};
 use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Reading, Solution, Solver, Sources, WorldParams};
-use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::hydrology::accumulation::Accumulation;
 use orogen_grid::hydrology::creep::creep_strides;
@@ -171,15 +171,7 @@ impl Solver for StreamPower {
     }
 
     fn read(&self, solution: &Solution, asked: &Reading, out: &mut [f32]) -> Result<()> {
-        let Some(layer) = solution.layers.get(asked.layer) else {
-            return Err(Error::new(ErrorKind::Internal, format!("a solution has no layer {}", asked.layer)));
-        };
-        layer.read(asked.kind, asked.at, out)?;
-        if asked.layer == SEDIMENT {
-            // Interpolation by the cubic may undershoot 0 beside deposits.
-            out.iter_mut().for_each(|thickness| *thickness = thickness.max(0.0));
-        }
-        Ok(())
+        solution.read_positive(&[SEDIMENT], asked, out)
     }
 
     fn lower(&self, padded: &Window, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
