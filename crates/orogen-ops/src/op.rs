@@ -323,9 +323,10 @@ pub trait Levelled: Declared + Send + Sync {
         self.levels().count.saturating_sub(1)
     }
 
-    /// Number of levels, from the coarsest, that read the op's inputs. Finer levels get no inputs.
-    fn levels_with_inputs(&self) -> usize {
-        self.levels().count
+    /// Whether a level reads an input, by its number. Levels get only the inputs that they read.
+    fn reads_input(&self, level: usize, input: usize) -> bool {
+        let _ = (level, input);
+        true
     }
 
     /// The planes of level 0 over `window`. Each given input covers `window.grown(source_halo(0))`.

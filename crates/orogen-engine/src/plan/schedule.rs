@@ -177,8 +177,9 @@ impl Scheduler<'_> {
         let (mut inputs, mut constants) = (Vec::new(), Vec::new());
         if self.resolved.graph.links[node].iter().any(|link| *link != Link::None) {
             let windows = levels::covering(op, &wanted(&out), &window);
-            for (level, window) in windows.into_iter().enumerate().take(op.levels_with_inputs()) {
-                let (given, more) = self.inputs(node, window.grown(op.source_halo(level)));
+            for (level, window) in windows.into_iter().enumerate() {
+                let read = |input: usize| op.reads_input(level, input);
+                let (given, more) = self.inputs_read(node, window.grown(op.source_halo(level)), read);
                 inputs.push(given);
                 constants.extend(more);
             }
@@ -190,11 +191,22 @@ impl Scheduler<'_> {
     /// The requests for a node's inputs over a window. A constant input becomes a grid with that value, filled by a
     /// step right before.
     fn inputs(&mut self, node: NodeId, window: Window) -> (Vec<Option<RequestId>>, Vec<Constant>) {
+        self.inputs_read(node, window, |_| true)
+    }
+
+    /// As [`Scheduler::inputs`], for the inputs whose number is `read`.
+    fn inputs_read(
+        &mut self,
+        node: NodeId,
+        window: Window,
+        read: impl Fn(usize) -> bool,
+    ) -> (Vec<Option<RequestId>>, Vec<Constant>) {
         let graph = &self.resolved.graph;
         let mut inputs: Vec<Option<RequestId>> = Vec::new();
         let mut constants = Vec::new();
-        for link in &graph.links[node] {
+        for (number, link) in graph.links[node].iter().enumerate() {
             inputs.push(match link {
+                _ if !read(number) => None,
                 Link::None => None,
                 Link::Value(_) => {
                     let grid = self.grid(window, node);

@@ -172,6 +172,60 @@ receiver = "land.receiver"
 }
 
 #[test]
+fn a_binding_shore_holds_on_detail_levels_in_every_window() {
+    let text = r#"
+orogen = 1
+world = { seed = 3, cell = 60.0 }
+[nodes.swells]
+op = "fbm"
+wavelength = 90000.0
+octaves = 3
+[nodes.shore]
+op = "expr"
+expr = "swells * 20000"
+[nodes.land]
+op = "continents"
+shore = "shore"
+uplift = 1.5
+halvings = 8
+details = 5
+shore_details = 4
+[outputs]
+height = "land"
+surface = "land.surface"
+receiver = "land.receiver"
+shore = "shore"
+"#;
+    let open = |threads: usize| {
+        let options = Options { threads: Some(threads), ..Options::default() };
+        World::with_options(Recipe::parse(text, "details").unwrap(), options).unwrap()
+    };
+    let world = open(2);
+    // The first shore on the line y = 0, east of the origin.
+    let line = world.grids(&["shore"], &Window::new(2000, 1, 60.0), &Progress::none()).unwrap();
+    let is_land = |i: usize| line[0][(i, 0)] > 0.0;
+    let coast = (1..2000).find(|&i| is_land(i) != is_land(i - 1)).unwrap() as f64 * 60.0;
+    // Cells of levels and a cell between two levels.
+    for cell in [60.0, 15.0, 5.0, 3.75] {
+        let whole = Window::new(143, 121, cell).at((coast / cell) as i64 - 71, -60);
+        let names = ["surface", "height", "receiver", "shore"];
+        let grids = world.grids(&names, &whole, &Progress::none()).unwrap();
+        let (mut land, mut wrong) = (0, 0);
+        for (surface, shore) in grids[0].data().iter().zip(grids[3].data()) {
+            land += usize::from(*surface > 0.0);
+            // The shore changes by at most 1.4 m a metre.
+            wrong += usize::from((*surface > 0.0) != (*shore > 0.0) && f64::from(shore.abs()) > 2.0 * cell);
+        }
+        assert!((100..whole.len() - 100).contains(&land) && wrong * 500 < whole.len(), "{cell} m: {land}, {wrong}");
+        let part = Window::new(40, 37, cell).at(whole.x + 51, whole.y + 47);
+        let alone = open(1).grids(&names, &part, &Progress::none()).unwrap();
+        for (grid, alone) in grids.iter().zip(&alone) {
+            assert_eq!(grid.crop(&part).unwrap(), *alone, "{cell} m");
+        }
+    }
+}
+
+#[test]
 fn floods_and_sediment_are_along_rivers_and_not_in_standing_water() {
     let text = r#"
 orogen = 1

@@ -188,7 +188,8 @@ impl Children {
                 let shares = [0.5625, 0.1875, 0.1875, 0.0625].into_iter().zip(parents);
                 shares.map(|(share, p)| share * parent.shore[p].min(beside)).sum::<f32>()
             };
-            self.shore[q] = match given.shore(x, y) {
+            let (east, south) = if self.is_irregular() { (self.east[q], self.south[q]) } else { (0.5, 0.5) };
+            self.shore[q] = match given.shore_at((x, y), east, south) {
                 _ if beside_lake => beside_water() + lakes::SHORE_IRREGULARITY * irregular,
                 Some(shore) if parents.into_iter().any(|p| parent.is_inland(p)) => {
                     shore.min(beside_water() + irregular)

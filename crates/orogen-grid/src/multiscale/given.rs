@@ -30,6 +30,10 @@ pub struct Given<'a> {
     pub continents: Option<&'a Continents>,
     /// Rivers that every level leads along their lines.
     pub rivers: Option<&'a DrawnRivers>,
+    /// If the shore is binding: the position of the samples in the cells, as a share of their sides. The shore is then
+    /// read at the nodes.
+    #[doc(hidden)]
+    pub binding: Option<f32>,
 }
 
 /// Minimum of uplift over erodibility, so that its logarithm is finite.
@@ -39,6 +43,35 @@ impl Given<'_> {
     /// The distance to the shore in kilometres at a sample of the lattice, if it is given.
     pub(super) fn shore(&self, x: i64, y: i64) -> Option<f32> {
         self.shore.and_then(|grid| at(grid, x, y)).map(|metres| metres * 1e-3)
+    }
+
+    /// The distance to the shore in kilometres at a node, if it is given: at its sample, or at its position in the cell
+    /// if the shore is binding.
+    pub(super) fn shore_at(&self, (x, y): (i64, i64), east: f32, south: f32) -> Option<f32> {
+        let Some(sample) = self.binding else { return self.shore(x, y) };
+        let part = |index: i64, share: f32| {
+            let from = (share - sample).floor();
+            (index + from as i64, share - sample - from)
+        };
+        let ((x, east), (y, south)) = (part(x, east), part(y, south));
+        // No sample beyond that of the node is read, which can be the last one.
+        let row = |y: i64| {
+            let west = self.shore(x, y)?;
+            if east == 0.0 { Some(west) } else { Some(west + east * (self.shore(x + 1, y)? - west)) }
+        };
+        let north = row(y)?;
+        if south == 0.0 { Some(north) } else { Some(north + south * (row(y + 1)? - north)) }
+    }
+
+    /// Whether the level is a detail level with a binding shore, whose samples are at the corners of its cells.
+    pub(super) fn is_of_detail(&self) -> bool {
+        self.binding == Some(0.0)
+    }
+
+    /// The distance to the shore in kilometres that decides about a cell, if it is given: at its sample, or in its
+    /// middle if the shore is binding.
+    pub(super) fn shore_of_cell(&self, x: i64, y: i64) -> Option<f32> {
+        self.shore_at((x, y), 0.5, 0.5)
     }
 
     /// The logarithm of uplift over erodibility at a sample of the lattice, if it is given.

@@ -15,6 +15,10 @@ const INLAND_HEIGHT: f32 = 0.5;
 /// Height of land between a river and the sea, relative to the height of the lowest river that passes.
 const PASSED_HEIGHT: f32 = 0.5;
 
+/// Number of links downstream that must be in the sea, too, where rivers drown in the sea beside them: a river does not
+/// end in a bay if it leaves it again. So many nodes around a node decide whether it drowns.
+pub const DROWNED_LINKS: usize = 2;
+
 /// The children of a node according to the given shore.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Below {
@@ -28,7 +32,8 @@ enum Below {
 
 /// Leads mouths to the sea of the next level. A node of the sea moves to a child that is sea. If it has none, its
 /// rivers continue to a neighboring node that has one; if there is none either, they end in an inland lake. A node of
-/// land whose heir is sea becomes sea if its river ends there. Nodes at the edge do not change.
+/// land whose heir is sea becomes sea if its river ends there. If the shore is binding, rivers in the sea beside it
+/// become sea before that. Nodes at the edge do not change.
 pub fn lead(level: &mut Level, given: &Given) {
     if given.shore.is_none() {
         return;
@@ -37,6 +42,34 @@ pub fn lead(level: &mut Level, given: &Given) {
         Some(Below::Sea(_, shore)) => Some(shore),
         _ => None,
     };
+    // Whether a river on land is in the sea of the given shore.
+    let is_low = |level: &Level, q: usize| {
+        level.receiver[q] < NONE
+            && shore_of(level, given, q, heir(level, q)).is_some_and(|shore| shore < 0.0)
+            && below(level, given, q) != Below::Unknown
+            && lowest_donor(level, q).is_some()
+    };
+    let is_drowned =
+        |level: &Level, q: usize| is_low(level, q) && level.downstream(q).is_some_and(|to| sea(level, to).is_some());
+    if given.binding.is_some() {
+        let is_beside = |level: &Level, q: usize| {
+            let mut around = STEPS.iter().filter_map(|step| level.neighbor(q, *step));
+            around.any(|near| sea(level, near).is_some())
+        };
+        let stays = |level: &Level, q: usize| {
+            let mut at = q;
+            (0..DROWNED_LINKS).all(|_| match level.downstream(at) {
+                Some(to) if level.receiver[to] < NONE => {
+                    at = to;
+                    shore_of(level, given, to, heir(level, to)).is_some_and(|shore| shore < 0.0)
+                }
+                _ => true,
+            })
+        };
+        let drowned = |q: &usize| is_low(level, *q) && is_beside(level, *q) && stays(level, *q);
+        let drowned: Vec<usize> = level.inner(1).filter(drowned).collect();
+        drowned.into_iter().for_each(|q| Change::Drown.apply(level, q));
+    }
     let mut changes = Vec::new();
     for q in level.inner(1) {
         if is_sea(level, q) {
@@ -49,12 +82,7 @@ pub fn lead(level: &mut Level, given: &Given) {
                 }
                 Below::Unknown => {}
             }
-        } else if level.receiver[q] < NONE
-            && shore_of(level, given, q, heir(level, q)).is_some_and(|shore| shore < 0.0)
-            && below(level, given, q) != Below::Unknown
-            && level.downstream(q).is_some_and(|to| sea(level, to).is_some())
-            && lowest_donor(level, q).is_some()
-        {
+        } else if is_drowned(level, q) {
             changes.push((q, Change::Drown));
         }
     }
@@ -106,7 +134,7 @@ fn is_sea(level: &Level, q: usize) -> bool {
 fn shore_of(level: &Level, given: &Given, q: usize, corner: u8) -> Option<f32> {
     let (i, j) = ((q % level.window.width) as i64, (q / level.window.width) as i64);
     let (x, y) = (2 * (level.window.x + i), 2 * (level.window.y + j));
-    given.shore(x + i64::from(corner & 1), y + i64::from(corner >> 1))
+    given.shore_of_cell(x + i64::from(corner & 1), y + i64::from(corner >> 1))
 }
 
 /// The children of a node according to the given shore.

@@ -51,15 +51,22 @@ impl Refinement {
     }
 
     /// The nodes of `window` on the level below `parent`, which must cover [`Refinement::parent_window`]; its other
-    /// nodes are not read. `given` covers the window grown by [`Refinement::given_reach`]; it is not used on detail
-    /// levels.
+    /// nodes are not read. `given` covers the window grown by [`Refinement::given_reach`]; detail levels use only
+    /// its rivers and, if they [read it](Refinement::reads_shore), its shore.
     ///
     /// # Errors
     /// If the parent covers too little, a parameter is out of range, the window does not belong to the level, or the
     /// work is cancelled.
     pub fn refine(&self, parent: &Level, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
         let depth = parent.depth + 1;
-        let given = if self.is_detail(depth) { &Given { rivers: given.rivers, ..Given::default() } } else { given };
+        let shore = given.shore.filter(|_| self.reads_shore(depth));
+        // The samples of detail levels are at the corners of their cells.
+        let sample = if self.is_detail(depth) { 0.0 } else { self.half_finest(depth) };
+        let binding = shore.filter(|_| self.is_shore_binding()).map(|_| sample);
+        let given = &match self.is_detail(depth) {
+            true => Given { rivers: given.rivers, shore, binding, ..Given::default() },
+            false => Given { binding, ..*given },
+        };
         self.check(depth, window)?;
         let needed = self.parent_window(depth, window);
         if !parent.window.contains(&needed) {
@@ -85,7 +92,7 @@ impl Refinement {
         if children.is_irregular() {
             drawn.below.place(&mut children.east, &mut children.south);
         }
-        let carved = self.carved(&parent, &mut children, &drawn, &schedule, progress)?;
+        let carved = self.carved((&parent, given), &mut children, &drawn, &schedule, progress)?;
         let mut growing = Growing::new(self, &children, carved, given, &schedule);
         for pass in schedule.passes {
             growing.run(pass);
@@ -97,7 +104,7 @@ impl Refinement {
     /// The children with the rivers and the water of the coarser level.
     fn carved(
         &self,
-        parent: &Level,
+        (parent, given): (&Level, &Given),
         children: &mut Children,
         drawn: &Drawn,
         schedule: &Schedule,
@@ -105,7 +112,7 @@ impl Refinement {
     ) -> Result<Carved> {
         let links = Links::new(self, parent, children, drawn, progress)?;
         progress.step(CARVING_WORK[1])?;
-        let water = standing_water(parent, &links, &drawn.below, children);
+        let water = standing_water(parent, &links, &drawn.below, children, given);
         progress.step(CARVING_WORK[2])?;
         children.extent = children.extent.shrunk(schedule.lakes);
         let mut carved = carve(self, parent, &links, children, water, drawn);

@@ -41,6 +41,9 @@ pub struct Refinement {
     pub sea: bool,
     /// Whether levels lead [drawn rivers](super::given::Given::rivers), which need more of the coarser level.
     pub drawn: bool,
+    /// Number of detail levels, from the coarsest, that read the [given shore](super::given::Given::shore). Finer ones
+    /// take it over and add irregularities.
+    pub shore_details: usize,
 }
 
 impl Default for Refinement {
@@ -57,13 +60,14 @@ impl Default for Refinement {
             lakes: 0.0,
             sea: false,
             drawn: false,
+            shore_details: 0,
         }
     }
 }
 
 orogen_noise::builder!(Refinement: with_seed(seed: u64), with_cell(cell: f64), with_levels(levels: usize), with_relief(relief: f64),
     with_creep(creep: f64), with_variation(variation: f64), with_jitter(jitter: f64), with_details(details: usize),
-    with_lakes(lakes: f64), with_sea(sea: bool), with_drawn(drawn: bool));
+    with_lakes(lakes: f64), with_sea(sea: bool), with_drawn(drawn: bool), with_shore_details(shore_details: usize));
 
 /// Minimum rise over one cell, in metres, so that heights strictly fall. On detail levels it shrinks with the cell, so
 /// that floors stay flat, down to the precision of heights of a few kilometres.
@@ -124,6 +128,18 @@ impl Refinement {
     /// Whether a level is finer than the finest level of valleys.
     pub(super) fn is_detail(&self, depth: usize) -> bool {
         depth > self.levels
+    }
+
+    /// Whether a level reads the given shore.
+    #[must_use]
+    pub fn reads_shore(&self, depth: usize) -> bool {
+        depth <= self.levels.saturating_add(self.shore_details)
+    }
+
+    /// Whether the given shore is binding on all levels that read it.
+    #[must_use]
+    pub fn is_shore_binding(&self) -> bool {
+        self.shore_details > 0
     }
 
     /// The minimum rise over one cell of a level, in metres.

@@ -11,6 +11,10 @@ const CARVED: usize = 7;
 /// Number of further cells that are not exact where there are drawn rivers: a tributary's area is added along them.
 const DRAWN: usize = super::carve::JOINED;
 
+/// Number of further cells that are not exact where the given shore is binding: the links on which drowned rivers
+/// depend, of two cells each, and the cells by which the sea spreads.
+const BOUND: usize = 2 * super::mouths::DROWNED_LINKS + super::shores::SPREAD;
+
 /// Number of passes of heights before drainage areas change, and number of rounds of areas and heights afterwards.
 const FIRST_PASSES: usize = 3;
 const ROUNDS: usize = 5;
@@ -120,7 +124,7 @@ impl Refinement {
             is_finest,
             begins_details: self.is_finest(above),
             lakes: if lakes::begin_at(self, above) { 2 * lakes::REACH } else { 0 },
-            carved: CARVED + if self.drawn { DRAWN } else { 0 },
+            carved: CARVED + if self.drawn { DRAWN } else { 0 } + if self.is_shore_binding() { BOUND } else { 0 },
             straightened: if is_finest { straighten::REACH } else { 0 },
             rims: (self.lakes > 0.0).then_some(lake_shores::RIM),
             passes,

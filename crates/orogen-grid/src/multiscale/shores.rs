@@ -1,6 +1,7 @@
 //! Water of a level: seas and lakes inherit their location from the coarser level, and their shores gain detail.
 
 use super::children::{Children, heir};
+use super::given::Given;
 use super::lakes::{drains, is_lake};
 use super::level::Level;
 use super::links::{Child, Links};
@@ -32,9 +33,21 @@ pub struct Water {
 /// The water level of children on land.
 pub const LAND: f32 = f32::INFINITY;
 
+/// Number of further cells by which the sea spreads on a level where the given shore is binding.
+pub const SPREAD: usize = 2;
+
 /// Computes the standing water of the children. Updates their distances to the shore.
-/// The cells of drawn rivers on land stay land.
-pub fn standing_water(parent: &Level, links: &Links, drawn: &Passages, children: &mut Children) -> Water {
+/// The cells of drawn rivers on land stay land. If the given shore is binding, the sea spreads further, and above
+/// detail levels it is also where no other water is near: in small bays, straits and inland seas.
+pub fn standing_water(
+    parent: &Level,
+    links: &Links,
+    drawn: &Passages,
+    children: &mut Children,
+    given: &Given,
+) -> Water {
+    let binding = given.binding.is_some();
+    let is_free = binding && !given.is_of_detail();
     let mut held = held(parent, links);
     let of_parent = |q: usize| q / children.extent.width / 2 * links.width + q % children.extent.width / 2;
     for (q, passage) in drawn.left().filter(|(q, _)| parent.receiver[of_parent(*q)] < NONE) {
@@ -55,26 +68,38 @@ pub fn standing_water(parent: &Level, links: &Links, drawn: &Passages, children:
     }
     dry_between(parent, &held, children.extent.shrunk(1), &mut levels);
     // Water spreads by one cell into low land.
-    let mut gained = Vec::new();
-    let inner = children.extent.shrunk(1);
-    for j in inner.rows() {
-        for i in inner.columns() {
-            let (q, p) = (j * width + i, j / 2 * parents + i / 2);
-            if parent.receiver[p] < NONE && held[q] == Held::Free && children.shore[q] < 0.0 {
+    let (mut gained, mut seas): (Vec<(usize, usize)>, Vec<usize>) = (Vec::new(), Vec::new());
+    for pass in 0..=if binding { SPREAD } else { 0 } {
+        let first = gained.len();
+        let inner = children.extent.shrunk(1);
+        for j in inner.rows() {
+            for i in inner.columns() {
+                let (q, p) = (j * width + i, j / 2 * parents + i / 2);
+                let is_low = parent.receiver[p] < NONE && held[q] == Held::Free && children.shore[q] < 0.0;
+                if !is_low || levels[q] < LAND {
+                    continue;
+                }
                 let around = [q - 1, q + 1, q - width, q + width];
                 let wet = around.into_iter().filter(|&beside| levels[beside] < LAND);
-                let Some(beside) = wet.clone().next() else { continue };
+                let Some(beside) = wet.clone().next() else {
+                    if is_free && pass == 0 && is_among_land(&levels, width, q) {
+                        seas.push(q);
+                    }
+                    continue;
+                };
                 if wet.clone().all(|other| levels[other] == levels[beside])
                     && !is_beside_lower(&held, width, q, levels[beside])
+                    && (pass == 0 || levels[beside] == 0.0)
                 {
                     gained.push((q, beside));
                 }
             }
         }
-    }
-    let spread: Vec<f32> = gained.iter().map(|&(_, beside)| levels[beside]).collect();
-    for (&(q, _), level) in gained.iter().zip(spread) {
-        levels[q] = level;
+        let spread: Vec<f32> = gained[first..].iter().map(|&(_, beside)| levels[beside]).collect();
+        for (&(q, _), level) in gained[first..].iter().zip(spread) {
+            levels[q] = level;
+        }
+        seas.drain(..).for_each(|q| levels[q] = 0.0);
     }
     for ((shore, &level), &held) in children.shore.iter_mut().zip(&levels).zip(&held) {
         *shore = match held {
@@ -108,6 +133,12 @@ fn dry_between(parent: &Level, held: &[Held], extent: Extent, levels: &mut [f32]
         }
     }
     dry.into_iter().for_each(|q| levels[q] = LAND);
+}
+
+/// Whether no water is beside a child.
+fn is_among_land(levels: &[f32], width: usize, q: usize) -> bool {
+    let mut around = STEPS.into_iter().map(|(east, south)| q.wrapping_add_signed(south * width as isize + east));
+    around.all(|near| levels[near] >= LAND)
 }
 
 /// Whether a river that is, or will be further down, lower than a water level passes next to a child.

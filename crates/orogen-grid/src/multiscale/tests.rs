@@ -1,5 +1,6 @@
 //! Properties of all levels: windows agree, and water flows down.
 
+mod binding;
 mod details;
 mod drawn;
 mod floors;

@@ -95,7 +95,7 @@ impl Template {
         let detail = decimal(rounded(WANDER * spacing));
         let most = decimal(rounded(4.0 * spacing));
         let wavelength = WAVELENGTH * spacing;
-        let octaves = libm::log2(wavelength / (2.0 * cell)).ceil().clamp(4.0, 16.0);
+        let octaves = libm::log2(wavelength / (2.0 * self.finest())).ceil().clamp(4.0, 24.0);
         let wavelength = decimal(rounded(wavelength));
         let at = |index: i64| decimal(index as f64 * window.cell);
         let at = format!("[{}, {}]", at(window.x), at(window.y));
@@ -204,6 +204,7 @@ stability_factor = "stability"
 {rain_key}cell = {cell}
 halvings = {halvings}
 details = {details}
+shore_details = {details}
 basins = 0.0
 lakes = 0.3
 {river_keys}

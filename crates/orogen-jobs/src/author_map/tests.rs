@@ -60,8 +60,10 @@ fn the_coast_is_the_drawn_one_within_a_cell() {
     for (cell, window) in [
         (opened.recipe().world.cell * 8.0, None),
         (opened.recipe().world.cell, None),
-        // A piece of the eastern coast of the western land.
+        // A piece of the eastern coast of the western land, and parts of it.
         (opened.recipe().world.cell / 4.0, Some([22_000.0, 10_000.0, 3000.0])),
+        (opened.recipe().world.cell / 16.0, Some([22_000.0, 10_500.0, 1000.0])),
+        (opened.recipe().world.cell / 32.0, Some([22_000.0, 10_500.0, 500.0])),
     ] {
         let window = match window {
             None => opened.full_window(cell).unwrap(),
@@ -71,8 +73,7 @@ fn the_coast_is_the_drawn_one_within_a_cell() {
             }
         };
         let heights = opened.window("surface", &window).unwrap();
-        // Detail levels have the shore of the finest level of valleys.
-        let within = 1.5 * cell.max(opened.recipe().world.cell);
+        let within = 1.5 * cell;
         let (mut wrong, mut land) = (0, 0);
         for j in 0..window.height {
             for i in 0..window.width {

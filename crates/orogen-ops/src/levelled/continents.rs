@@ -70,6 +70,10 @@ drained_op! {
         /// finest valleys, with gullies on them, rough rock where they are steep, and beds and banks of rivers that are
         /// wider than a sample. Finer samples are interpolated.
         details: u32 = 0, range 0 to 10;
+        /// Number of detail levels that read `shore`, from the coarsest one: their shore is the given one within a
+        /// cell. Finer levels take over the shore of the level above and make it irregular. Use it where `shore` has
+        /// detail below `cell`, for example a drawn coast.
+        shore_details: u32 = 0, range 0 to 10;
         /// Frequency of lakes with an outlet along rivers, from none (0) to many (1). They are frequent in
         /// regions of about 500 km, as where ice was, more often in mountains, and rare elsewhere and in plains. They
         /// begin at cells of 5 km to 400 m: levels that begin with a smaller cell have none.
@@ -107,7 +111,10 @@ impl Continents {
     /// The land with what only this op has.
     fn completed(&self, land: Drained) -> Drained {
         let continents = Land::default().with_land(self.land).with_size(self.size).with_basins(self.basins);
-        let refinement = land.refinement.with_drawn(!(self.rivers.is_empty() && self.rivers_file.0.is_empty()));
+        let refinement = land
+            .refinement
+            .with_drawn(!(self.rivers.is_empty() && self.rivers_file.0.is_empty()))
+            .with_shore_details(self.shore_details as usize);
         Drained { continents: Some(continents), refinement, ..land }
     }
 

@@ -114,6 +114,7 @@ fn given<'a>(inputs: &GridInputs<'a>) -> Given<'a> {
         rain: inputs.get("rain"),
         continents: None,
         rivers: None,
+        binding: None,
     }
 }
 
@@ -145,9 +146,11 @@ impl<T: DrainedOp> Levelled for T {
         self.drained().refinement.levels
     }
 
-    fn levels_with_inputs(&self) -> usize {
-        // Detail levels take over the data of the finest level of valleys and read no inputs.
-        self.drained().refinement.levels + 1
+    fn reads_input(&self, level: usize, input: usize) -> bool {
+        // Detail levels take over the data of the finest level of valleys. Some read the shore again.
+        let Drained { refinement, .. } = self.drained();
+        let is_shore = self.spec().inputs.get(input).is_some_and(|input| input.name == "shore");
+        level <= refinement.levels || (is_shore && refinement.reads_shore(level))
     }
 
     fn coarsest(&self, inputs: &GridInputs, window: &Window, context: &Context) -> Result<Vec<Grid>> {

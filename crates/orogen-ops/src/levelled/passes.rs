@@ -94,6 +94,9 @@ pub fn lower(land: &Drained, level: usize, spec: &Spec, given: &[bool]) -> Lower
     if schedule.lakes > 0 {
         return Lowering::Processor("lakes are searched along rivers, one after the other");
     }
+    if refinement.is_shore_binding() && spec.given_input("shore", given).is_some() {
+        return Lowering::Processor("the sea follows a binding shore across many cells");
+    }
     // Detail levels take over the data of the finest level of valleys and read no inputs.
     let given = if level > refinement.levels { &[] } else { given };
     let ahead = [level - 1, level].map(|level| {

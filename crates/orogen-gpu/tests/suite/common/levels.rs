@@ -121,8 +121,8 @@ impl Chain<'_> {
 
     pub fn inputs(&self, level: usize) -> Vec<Option<Grid>> {
         let read = self.windows[level].grown(self.op.source_halo(level));
-        let reads = level < self.op.levels_with_inputs();
-        (0..self.given.len()).map(|i| (self.given[i] && reads && i >= 2).then(|| factor(&read, i))).collect()
+        let reads = |i: usize| self.given[i] && self.op.reads_input(level, i);
+        (0..self.given.len()).map(|i| (reads(i) && i >= 2).then(|| factor(&read, i))).collect()
     }
 
     pub fn first(&self) -> Vec<Grid> {
