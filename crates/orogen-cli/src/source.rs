@@ -25,7 +25,7 @@ pub enum Source {
 }
 
 /// The name of standard input in messages.
-const STDIN: &str = "standard input";
+pub const STDIN: &str = "standard input";
 
 /// The content of standard input, which can be read only once.
 static PIPED: OnceLock<Vec<u8>> = OnceLock::new();

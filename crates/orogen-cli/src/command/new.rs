@@ -1,9 +1,11 @@
 //! `orogen new`.
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 use orogen::author_map::{self, AuthorMapJob};
 use orogen::io::file::{self, Existing, OutputPolicy};
+use orogen::io::format::fmg::FmgMap;
 use orogen::recipe::presets;
 use orogen::{Error, ErrorKind, Options};
 
@@ -23,7 +25,7 @@ pub struct Args {
     #[arg(long, value_name = "PRESET", default_value = presets::DEFAULT, conflicts_with = "map")]
     preset: String,
     /// Make the world of a map that Azgaar's Fantasy Map Generator has exported to JSON (`full`): its coast, heights,
-    /// rain, rivers, lakes and names are written to the folder NAME
+    /// rain, rivers, lakes and names are written to the folder NAME; - is standard input
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
     /// Width of the map in kilometres [default: by the scale of the map]
@@ -76,12 +78,17 @@ fn author_map(args: &Args, map: &Path) -> Result<(), Failure> {
     let job = AuthorMapJob::new().with_width(args.width).with_seed(args.seed);
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let (bar, progress) = Bar::new(false);
-    let world = job
-        .run(map, &name, &limits, &progress)
+    let shown = if is_stdout(map) { source::STDIN.into() } else { map.display().to_string() };
+    let read = match is_stdout(map) {
+        true => FmgMap::read_from(&mut io::stdin().lock(), &shown, args.width),
+        false => FmgMap::read(map, args.width),
+    };
+    let world = read
+        .and_then(|map| job.run_on(map, &name, &limits, &progress))
         .map_err(|error| interrupt::explain(error.into(), "no files were written"))?;
     drop(bar);
     world.write(&path, &folder, &OutputPolicy::new(Existing::Keep))?;
-    world.map.notes.iter().for_each(|note| say::error(&format!("note: {}: {note}", map.display())));
+    world.map.notes.iter().for_each(|note| say::error(&format!("note: {shown}: {note}")));
     let (word, places) = (say::word(&path), say::word(&folder.join("places.csv")));
     say::out(&format!(
         "wrote {} and the files in {}\n{}\nmake it:             orogen generate {word}\n\

@@ -26,6 +26,25 @@ fn a_map_becomes_a_world_that_can_be_checked_and_made() {
 }
 
 #[test]
+fn a_map_on_standard_input_makes_the_same_world() {
+    let folder = Folder::new();
+    folder.write("map.json", samples::map().to_string());
+    let piped = |name: &str, content: &str| {
+        let file = std::fs::File::open(folder.path(content)).unwrap();
+        folder.command(&["new", name, "--map", "-", "--width", "41"]).stdin(file).output().unwrap()
+    };
+    folder.good(&["new", "mine", "--map", "map.json", "--width", "41"]);
+    let outcome = piped("piped", "map.json");
+    assert!(outcome.status.success(), "{}", String::from_utf8_lossy(&outcome.stderr));
+    assert!(String::from_utf8_lossy(&outcome.stderr).contains("note: standard input: 1 river"));
+    assert_eq!(folder.text("piped.toml"), folder.text("mine.toml").replace("mine", "piped"));
+    assert_eq!(folder.names("piped"), folder.names("mine"));
+    let outcome = piped("none", "mine.toml");
+    assert_eq!(outcome.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&outcome.stderr).contains("cannot read standard input: "));
+}
+
+#[test]
 fn maps_that_cannot_be_read_leave_no_files() {
     let folder = Folder::new();
     folder.write("map.json", "{}");

@@ -1,8 +1,9 @@
 //! The map in metres of the world.
 
+use std::io::Read;
 use std::path::Path;
 
-use orogen_grid::error::Result;
+use orogen_grid::error::{Error, Result};
 use orogen_grid::words::{bytes, count, number};
 
 use super::cells::{Cells, Sets};
@@ -76,13 +77,31 @@ impl FmgMap {
             return Err(refused(&name, why));
         };
         let is_saved = path.extension().is_some_and(|extension| extension == "map" || extension == "gz");
+        FmgMap::of_content(content, is_saved, width).map_err(|why| refused(&name, why))
+    }
+
+    /// Reads an export from a stream, such as standard input. `name` is its name in messages.
+    ///
+    /// # Errors
+    /// The errors of [`FmgMap::read`].
+    pub fn read_from(stream: &mut dyn Read, name: &str, width: Option<f64>) -> Result<FmgMap> {
+        let mut content = Vec::new();
+        let read = stream.take(MAX_LENGTH + 1).read_to_end(&mut content);
+        read.map_err(|cause| Error::file("read the map from", Path::new(name), &cause))?;
+        if content.len() as u64 > MAX_LENGTH {
+            return Err(refused(name, format!("it has more than {}, the limit of a map", bytes(MAX_LENGTH))));
+        }
+        FmgMap::of_content(content, false, width).map_err(|why| refused(name, why))
+    }
+
+    /// The map of a file's content, which is perhaps the tool's own file.
+    fn of_content(content: Vec<u8>, is_saved: bool, width: Option<f64>) -> std::result::Result<FmgMap, String> {
         let text = String::from_utf8(content).map_err(|_| "it is not text in UTF-8".to_owned());
-        let parsed = match text {
+        match text {
             Ok(text) if !is_saved || text.trim_start().starts_with('{') => FmgMap::parse(&text, width),
             Err(why) if !is_saved => Err(why),
             _ => Err(SAVED.into()),
-        };
-        parsed.map_err(|why| refused(&name, why))
+        }
     }
 
     /// Reads the text of an export.
