@@ -41,7 +41,7 @@ pub struct Refinement {
     pub sea: bool,
     /// Whether levels lead [drawn rivers](super::given::Given::rivers), which need more of the coarser level.
     pub drawn: bool,
-    /// Number of detail levels, from the coarsest, that read the [given shore](super::given::Given::shore). Finer ones
+    /// Number of detail levels, from the coarsest, that read the given shore. Finer ones
     /// take it over and add irregularities.
     pub shore_details: usize,
 }
