@@ -11,7 +11,7 @@ use orogen::{Error, ErrorKind, Options};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
-use crate::sink::is_stdout;
+use crate::sink::{DASH, is_stdout};
 use crate::values::bytes::Bytes;
 use crate::values::number::{kilometres, seed};
 use crate::{interrupt, memory, say, source};
@@ -78,8 +78,9 @@ fn author_map(args: &Args, map: &Path) -> Result<(), Failure> {
     let job = AuthorMapJob::new().with_width(args.width).with_seed(args.seed);
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let (bar, progress) = Bar::new(false);
-    let shown = if is_stdout(map) { source::STDIN.into() } else { map.display().to_string() };
-    let read = match is_stdout(map) {
+    let is_stdin = map == Path::new(DASH);
+    let shown = if is_stdin { source::STDIN.into() } else { map.display().to_string() };
+    let read = match is_stdin {
         true => FmgMap::read_from(&mut io::stdin().lock(), &shown, args.width),
         false => FmgMap::read(map, args.width),
     };

@@ -9,11 +9,12 @@ mod rain;
 mod reach;
 
 use super::continents::Continents;
+use super::drawn_rivers::DrawnRivers;
 use super::given::Given;
 use super::level::Level;
 use super::refinement::Refinement;
 use crate::error::ErrorKind;
-use crate::grid::Window;
+use crate::grid::{Grid, Window};
 use crate::hydrology::direction::{NONE, STEPS};
 use crate::progress::Progress;
 use crate::random::mix64;
@@ -37,6 +38,34 @@ fn level(land: &Continents, depth: usize, window: &Window) -> Level {
 
 fn window(land: &Continents, depth: usize, at: (i64, i64), size: (usize, usize)) -> Window {
     Window::new(size.0, size.1, land.refinement.cell_of(depth)).at(at.0, at.1)
+}
+
+/// The level over a window of nodes of land with a given shore and drawn rivers, computed independently of other
+/// windows. `shore` samples the distance to the shore over a window of a level.
+fn level_of_given(
+    land: &Continents,
+    shore: &dyn Fn(usize, &Window) -> Grid,
+    rivers: &DrawnRivers,
+    depth: usize,
+    window: &Window,
+) -> Level {
+    let refinement = &land.refinement;
+    let reach = if depth == 0 { Continents::COARSEST_REACH } else { refinement.given_reach(depth) };
+    let sampled = shore(depth, &window.grown(reach));
+    let given = Given { shore: Some(&sampled), rivers: Some(rivers), ..Given::default() };
+    if depth == 0 {
+        return land.coarsest(&given, window, &Progress::none()).unwrap();
+    }
+    let above = refinement.parent_window(depth, window);
+    let parent = level_of_given(land, shore, rivers, depth - 1, &above);
+    land.refine(&parent, &given, window, &Progress::none()).unwrap()
+}
+
+/// A window of `size` samples of a level with its middle near a position in metres.
+fn around(land: &Continents, depth: usize, at: (f64, f64), size: usize) -> Window {
+    let cell = land.refinement.cell_of(depth);
+    let corner = |at: f64| (at / cell) as i64 - size as i64 / 2;
+    window(land, depth, (corner(at.0), corner(at.1)), (size, size))
 }
 
 /// The bits of all planes.

@@ -1,11 +1,10 @@
 //! A given shore that is binding on all levels, down to the finest.
 
-use super::{bits, window};
+use super::{around, bits, level_of_given, window};
 use crate::grid::{Grid, Window};
 use crate::hydrology::direction::NONE;
 use crate::multiscale::continents::Continents;
 use crate::multiscale::drawn_rivers::DrawnRivers;
-use crate::multiscale::given::Given;
 use crate::multiscale::level::Level;
 use crate::multiscale::refinement::Refinement;
 use crate::progress::Progress;
@@ -44,24 +43,9 @@ fn sampled(land: &Continents, depth: usize, window: &Window) -> Grid {
     Grid::from_data(*window, rows.map(|(x, y)| distance(metres(x), metres(y)) as f32).collect()).unwrap()
 }
 
-/// The level over a window of nodes, computed independently of other windows.
+/// The level over a window, computed independently of other windows.
 fn made(land: &Continents, rivers: &DrawnRivers, depth: usize, window: &Window) -> Level {
-    let refinement = &land.refinement;
-    let reach = if depth == 0 { Continents::COARSEST_REACH } else { refinement.given_reach(depth) };
-    let shore = sampled(land, depth, &window.grown(reach));
-    let given = Given { shore: Some(&shore), rivers: Some(rivers), ..Given::default() };
-    if depth == 0 {
-        return land.coarsest(&given, window, &Progress::none()).unwrap();
-    }
-    let parent = made(land, rivers, depth - 1, &refinement.parent_window(depth, window));
-    land.refine(&parent, &given, window, &Progress::none()).unwrap()
-}
-
-/// A window of samples of a level with its middle near a position in metres.
-fn around(land: &Continents, depth: usize, at: (f64, f64), size: usize) -> Window {
-    let cell = land.refinement.cell_of(depth);
-    let corner = |at: f64| (at / cell) as i64 - size as i64 / 2;
-    window(land, depth, (corner(at.0), corner(at.1)), (size, size))
+    level_of_given(land, &|depth, window| sampled(land, depth, window), rivers, depth, window)
 }
 
 #[test]

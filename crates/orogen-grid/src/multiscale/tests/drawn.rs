@@ -1,14 +1,12 @@
 //! Rivers drawn on the map: levels lead them along their lines.
 
-use super::{bits, window};
+use super::{around, bits, level_of_given, window};
 use crate::grid::{Grid, Window};
 use crate::hydrology::direction::NONE;
 use crate::multiscale::continents::Continents;
 use crate::multiscale::drawn_rivers::DrawnRivers;
-use crate::multiscale::given::Given;
 use crate::multiscale::level::Level;
 use crate::multiscale::refinement::Refinement;
-use crate::progress::Progress;
 
 /// An island of 28 km radius around the origin, with rivers that meet, that run side by side, turn back, and end in the
 /// sea.
@@ -65,22 +63,7 @@ fn shore(window: &Window) -> Grid {
 
 /// The level over a window, computed independently of other windows.
 fn made(land: &Continents, rivers: &DrawnRivers, depth: usize, window: &Window) -> Level {
-    let refinement = &land.refinement;
-    let reach = if depth == 0 { Continents::COARSEST_REACH } else { refinement.given_reach(depth) };
-    let shore = shore(&window.grown(reach));
-    let given = Given { shore: Some(&shore), rivers: Some(rivers), ..Given::default() };
-    if depth == 0 {
-        return land.coarsest(&given, window, &Progress::none()).unwrap();
-    }
-    let parent = made(land, rivers, depth - 1, &refinement.parent_window(depth, window));
-    land.refine(&parent, &given, window, &Progress::none()).unwrap()
-}
-
-/// A window of `size` samples of a level with its middle near a position in metres.
-fn around(land: &Continents, depth: usize, at: (f64, f64), size: usize) -> Window {
-    let cell = land.refinement.cell_of(depth);
-    let corner = |at: f64| (at / cell) as i64 - size as i64 / 2;
-    window(land, depth, (corner(at.0), corner(at.1)), (size, size))
+    level_of_given(land, &|_, window| shore(window), rivers, depth, window)
 }
 
 #[test]
