@@ -114,9 +114,14 @@ impl Running {
     }
 
     pub fn ask(&self, method: &str, path: &str, headers: &[&str]) -> Reply {
+        self.try_ask(method, path, headers).unwrap_or_else(|| panic!("{method} {path} has no answer"))
+    }
+
+    /// As [`Running::ask`]; `None` if the server ended the connection first.
+    fn try_ask(&self, method: &str, path: &str, headers: &[&str]) -> Option<Reply> {
         let headers: String = headers.iter().map(|header| format!("{header}\r\n")).collect();
         let head = format!("{method} {path} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n{headers}\r\n", self.address);
-        parsed(&self.send(head.as_bytes())).unwrap_or_else(|| panic!("{method} {path} has no answer"))
+        parsed(&self.send(head.as_bytes()))
     }
 
     pub fn get(&self, path: &str) -> Reply {
@@ -131,14 +136,13 @@ impl Running {
 
     /// A number of `/metrics`.
     pub fn metric(&self, name: &str) -> u64 {
-        let reply = self.get("/metrics");
-        let line = reply.text().lines().find_map(|line| line.strip_prefix(&format!("{name} "))).map(str::to_string);
-        line.unwrap_or_else(|| panic!("no {name}")).parse().unwrap()
+        number(&self.get("/metrics"), name)
     }
 
-    /// Waits until a number of `/metrics` has a value.
+    /// Waits until a number of `/metrics` has a value. A server whose connections are all still busy is asked again.
     pub fn wait(&self, name: &str, value: u64) {
-        while self.metric(name) != value {
+        let reply = || self.try_ask("GET", "/metrics", &[]).filter(|reply| reply.status != 503);
+        while reply().is_none_or(|reply| number(&reply, name) != value) {
             std::thread::yield_now();
         }
     }
@@ -156,6 +160,12 @@ impl Drop for Running {
             ended.unwrap();
         }
     }
+}
+
+/// A number of the answer of `/metrics`.
+fn number(reply: &Reply, name: &str) -> u64 {
+    let line = reply.text().lines().find_map(|line| line.strip_prefix(&format!("{name} "))).map(str::to_string);
+    line.unwrap_or_else(|| panic!("no {name}")).parse().unwrap()
 }
 
 /// Splits an answer; `None` if it is none.
