@@ -10,7 +10,7 @@ import pyogrio
 import rasterio
 import rasterio.warp
 import shapely
-from orogen import ROOT, WORK, Checks, export
+from orogen import BINARY, ROOT, WORK, Checks, export
 
 checks = Checks()
 LAYERS = ["rivers", "lakes", "watersheds", "summits", "coast", "contours"]
@@ -281,6 +281,41 @@ for ending in ["gpkg", "fgb", "geojson", "tif"]:
     crs = rasterio.open(path).crs if ending == "tif" else rasterio.CRS.from_user_input(read(path)[2]["crs"])
     found = rasterio.warp.transform(crs, "EPSG:4326", [4000], [9000])
     checks.near(f"a system without a code in .{ending}", max(abs(a[0] - b[0]) for a, b in zip(found, expect)), 0.0, 1e-9)
+
+# Layers of a GeoPackage that GDAL wrote, with curves of many points, holes and islands, as drawings of a recipe.
+turn = numpy.linspace(0, 60, 5000)
+spiral = shapely.LineString(numpy.column_stack([900 + 14 * turn * numpy.cos(turn), -900 + 14 * turn * numpy.sin(turn), turn]))
+ring = shapely.Point(900, -900).buffer(700, quad_segs=64)
+shore = shapely.unary_union([ring - shapely.Point(1000, -800).buffer(300), shapely.Point(1000, -800).buffer(120)])
+for layer, geometry, kind in [("roads", spiral, "LineString Z"), ("coast", shapely.multipolygons([*shore.geoms]), "MultiPolygon"), ("spare", ring.boundary, "LineString")]:
+    shapes = numpy.array([shapely.to_wkb(geometry, flavor="iso")])
+    pyogrio.raw.write(WORK / "drawn.gpkg", shapes, [numpy.array([7])], ["n"], layer=layer, driver="GPKG", geometry_type=kind, crs="EPSG:32632", append=layer != "roads")
+recipe = WORK / "drawn.toml"
+recipe.write_text(
+    """orogen = 1
+[world]
+size = [1800, 1800]
+cell = 20
+[nodes.roads]
+op = "path"
+file = "drawn.gpkg|layername=roads"
+[nodes.coast]
+op = "polygon"
+file = "drawn.gpkg"
+[outputs]
+height = "roads.distance"
+to_shore = "coast.distance"
+"""
+)
+for layer, expect in [("height", lambda points: shapely.distance(spiral, points)), ("to_shore", lambda points: shapely.distance(shore.boundary, points))]:
+    with rasterio.open(export(recipe, f"drawn_{layer}.tif", "--layer", layer)) as raster:
+        rows, columns = numpy.indices(raster.shape)
+        points = shapely.points(numpy.column_stack(rasterio.transform.xy(raster.transform, rows.ravel(), columns.ravel())))
+        found = numpy.abs(raster.read(1).ravel())
+    checks.near(f"drawn.gpkg: distances in {layer}", float(numpy.abs(found - expect(points)).max()), 0.0, 2e-3)
+recipe.write_text(recipe.read_text().replace("|layername=roads", ""))
+several = subprocess.run([BINARY, "export", recipe, "-o", "none.tif"], cwd=WORK, capture_output=True)
+checks.that("drawn.gpkg: a layer must be chosen", several.returncode == 1 and b"`roads`, `spare`" in several.stderr, several.stderr)
 
 # A truncated file must be rejected, and a rising river must be detected.
 whole = (WORK / "fjords.gpkg").read_bytes()

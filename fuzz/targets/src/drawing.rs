@@ -1,16 +1,15 @@
-//! SVG and GeoJSON: any text is a drawing, or refused with a message. The distance to it and its inside are known
-//! everywhere.
+//! SVG, GeoJSON and GeoPackage: any content is a drawing, or refused with a message. The distance to it and its inside
+//! are known everywhere.
 
 use orogen::grid::polylines::{Outline, Segments};
 use orogen::io::format::drawing::{Drawing, Format};
 use orogen::io::format::outlines::DrawingKind;
 
-/// Runs the target on an input; one that is no text is skipped.
+/// Runs the target on an input.
 pub fn run(input: &[u8]) {
-    let Ok(text) = std::str::from_utf8(input) else { return };
-    for format in [Format::Svg, Format::GeoJson] {
+    for format in [Format::Svg, Format::GeoJson, Format::GeoPackage] {
         for kind in [DrawingKind::Lines, DrawingKind::Areas] {
-            let Ok(drawing) = Drawing::parse(text, format, kind) else { continue };
+            let Ok(drawing) = Drawing::parse(input, format, None, kind) else { continue };
             assert!(!drawing.outlines.is_empty());
             for is_smooth in [false, true] {
                 let outlines = drawing.outlines.iter().map(|outline| match is_smooth {

@@ -68,6 +68,12 @@ impl Collector {
         Collector { kind, outlines: Vec::new(), others: 0, points: 0 }
     }
 
+    /// The kind of outlines that is requested.
+    #[must_use]
+    pub fn kind(&self) -> DrawingKind {
+        self.kind
+    }
+
     /// Adds the outlines of an element that can be used as any of `kinds`.
     pub fn take(&mut self, kinds: &[DrawingKind], outlines: Vec<Outline>) -> Result<(), String> {
         if !kinds.contains(&self.kind) {

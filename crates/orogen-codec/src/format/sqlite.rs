@@ -1,7 +1,7 @@
 //! SQLite database files (version 3), written once from start to end. Tables with sorted rows become packed B-trees.
 //!
 //! Follows "Database File Format", sqlite.org/fileformat2.html, with pages of 4096 bytes, UTF-8 and rollback journal.
-//! This module neither reads nor changes databases.
+//! Databases are neither changed here nor read; for that see `sqlite_reader`.
 
 use std::io::{self, Write};
 
@@ -9,7 +9,7 @@ use std::io::{self, Write};
 pub const PAGE: usize = 4096;
 
 /// Size of the file header in the first page, in bytes.
-const FILE_HEAD: usize = 100;
+pub(super) const FILE_HEAD: usize = 100;
 
 /// The version of SQLite that is written into the file.
 const SQLITE_VERSION: u32 = 3_045_000;
@@ -18,8 +18,8 @@ const SQLITE_VERSION: u32 = 3_045_000;
 const LOCKED: u32 = (1 << 30) / PAGE as u32 + 1;
 
 /// Types of pages.
-const TABLE_LEAF: u8 = 0x0D;
-const TABLE_INTERIOR: u8 = 0x05;
+pub(super) const TABLE_LEAF: u8 = 0x0D;
+pub(super) const TABLE_INTERIOR: u8 = 0x05;
 const INDEX_LEAF: u8 = 0x0A;
 
 /// A value of a column.

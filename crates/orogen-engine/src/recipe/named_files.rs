@@ -70,7 +70,7 @@ impl Recipe {
     fn load_files(&mut self, allowed: u64, windows_above: Option<u64>) -> Result<()> {
         // One file may be heights for one node and a picture for another.
         let mut known: BTreeMap<(PathBuf, FileKind, Option<u32>), Arc<PreparedDem>> = BTreeMap::new();
-        let mut drawings: BTreeMap<(PathBuf, FileKind), Arc<Drawing>> = BTreeMap::new();
+        let mut drawings: BTreeMap<(PathBuf, Option<String>, FileKind), Arc<Drawing>> = BTreeMap::new();
         let mut files: BTreeMap<(PathBuf, Option<u32>), Option<Arc<DemFile>>> = BTreeMap::new();
         self.held = 0;
         for NamedNode { name, node, .. } in &mut self.nodes {
@@ -90,12 +90,12 @@ impl Recipe {
                 };
                 let path = (file.path(), file.kind(), band);
                 if let FileKind::Drawing(kind) = path.1 {
-                    let path = (path.0, path.1);
-                    let drawing = match file.drawing().or(drawings.get(&path)) {
+                    let key = (path.0, file.layer().map(str::to_owned), path.1);
+                    let drawing = match file.drawing().or(drawings.get(&key)) {
                         Some(drawing) => Arc::clone(drawing),
-                        None => Arc::new(Drawing::read(&path.0, kind, left).map_err(in_node)?),
+                        None => Arc::new(Drawing::read(&key.0, file.layer(), kind, left).map_err(in_node)?),
                     };
-                    if drawings.insert(path, Arc::clone(&drawing)).is_none() {
+                    if drawings.insert(key, Arc::clone(&drawing)).is_none() {
                         self.held = self.held.saturating_add(drawing.memory());
                     }
                     file.hold_drawing(drawing);

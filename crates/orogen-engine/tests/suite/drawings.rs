@@ -169,6 +169,13 @@ fn files_of_both_formats_give_what_points_give() {
             assert_eq!(made, points, "{file}.{layer}");
         }
     }
+    // A layer of a file with several.
+    let layers = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/drawing/layers.gpkg");
+    fs::copy(layers, folder.join("layers.gpkg")).unwrap();
+    let roads = read("path", "points = [[0, 5], [50, 5]]", "distance");
+    assert_eq!(read("path", "file = \"layers.gpkg|layername=roads\"", "distance"), roads);
+    let recipe = Recipe::read(&folder.join("recipe.toml")).unwrap();
+    assert_eq!(recipe.files(), [folder.join("layers.gpkg")]);
     // A missing file or one of the wrong kind is reported with the node and the position.
     let refused = |op: &str, file: &str| {
         fs::write(folder.join("recipe.toml"), text(op, &format!("file = \"{file}\""))).unwrap();
@@ -178,9 +185,10 @@ fn files_of_both_formats_give_what_points_give() {
     };
     for (op, file, message) in [
         ("path", "none.svg", "node `drawn`"),
+        ("path", "layers.gpkg", "lines in the layers `rivers`, `roads`"),
         ("path", "area.json", "the op `polygon` reads its 2 areas"),
         ("polygon", "line.svg", "the op `path` reads its 1 line"),
-        ("polygon", "recipe.toml", "the op `polygon` reads .svg and .geojson"),
+        ("polygon", "recipe.toml", "the op `polygon` reads .svg, .geojson and .gpkg"),
     ] {
         let error = refused(op, file);
         assert!(error.contains(message) && error.contains("recipe.toml:4:8"), "{error}");

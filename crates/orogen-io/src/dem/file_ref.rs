@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::dem_file::DemFile;
 use super::prepared::PreparedDem;
-use crate::format::drawing::Drawing;
+use crate::format::drawing::{Drawing, file_and_layer, named};
 use crate::format::outlines::DrawingKind;
 use crate::fs;
 use orogen_grid::error::Location;
@@ -85,10 +85,10 @@ impl From<&str> for AreaFile {
     }
 }
 
-/// Equality compares the names of files, not their content.
+/// Equality compares the names of files and layers, not their content.
 impl PartialEq for FileRef {
     fn eq(&self, other: &FileRef) -> bool {
-        self.path() == other.path()
+        self.path() == other.path() && self.layer() == other.layer()
     }
 }
 
@@ -115,9 +115,23 @@ impl FileRef {
     /// folder.
     #[must_use]
     pub fn path(&self) -> PathBuf {
+        let (file, _) = self.parts();
         match &self.folder {
-            Some(folder) => fs::joined(folder, &self.path),
-            None => PathBuf::from(&self.path),
+            Some(folder) => fs::joined(folder, file),
+            None => PathBuf::from(file),
+        }
+    }
+
+    /// The layer of a GeoPackage, if one is named after the file.
+    #[must_use]
+    pub fn layer(&self) -> Option<&str> {
+        self.parts().1
+    }
+
+    fn parts(&self) -> (&str, Option<&str>) {
+        match self.kind {
+            FileKind::Drawing(_) => file_and_layer(&self.path),
+            FileKind::Heights | FileKind::Picture => (&self.path, None),
         }
     }
 
@@ -127,8 +141,13 @@ impl FileRef {
         match &self.folder {
             // No file.
             _ if self.path.is_empty() => String::new(),
-            Some(_) if fs::is_remote(self.path()) => self.path().display().to_string(),
-            Some(_) => std::path::absolute(self.path()).unwrap_or_else(|_| self.path()).display().to_string(),
+            Some(_) => {
+                let path = match self.path() {
+                    path if fs::is_remote(&path) => path,
+                    path => std::path::absolute(&path).unwrap_or(path),
+                };
+                named(&path.display().to_string(), self.layer())
+            }
             None => self.path.clone(),
         }
     }

@@ -1,6 +1,6 @@
-//! Lines and areas from vector files: SVG and GeoJSON.
+//! Lines and areas from vector files: SVG, GeoJSON and GeoPackage.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use orogen_grid::error::Result;
 use orogen_grid::polylines::outline::{Outline, Piece};
@@ -8,14 +8,17 @@ use orogen_grid::words::{bytes_apart, count};
 
 use super::dem::refused;
 use super::outlines::{self, Collector, DrawingKind};
-use super::{geojson_reader, svg_shapes};
-use crate::open;
+use super::{geojson_reader, gpkg_reader, svg_shapes};
+use crate::{fs, open};
 
-/// Maximum length of a file, in bytes.
+/// Maximum length of a text, in bytes.
 pub const MAX_LENGTH: u64 = 32 << 20;
 
-/// Memory for reading, in bytes per byte of a file.
-const MEMORY_PER_BYTE: u64 = 16;
+/// Maximum length of a GeoPackage, which may contain other layers and their indexes.
+const MAX_PACKAGE: u64 = 256 << 20;
+
+/// What follows the name of a GeoPackage before the name of one of its layers, as in QGIS.
+const LAYER: &str = "|layername=";
 
 /// A format of vector files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,6 +27,23 @@ pub enum Format {
     Svg,
     /// GeoJSON (RFC 7946).
     GeoJson,
+    /// OGC GeoPackage.
+    GeoPackage,
+}
+
+/// The file of a name and, of a GeoPackage, the layer that may follow it: `map.gpkg|layername=coast`.
+#[must_use]
+pub fn file_and_layer(name: &str) -> (&str, Option<&str>) {
+    match name.split_once(LAYER) {
+        Some((file, layer)) if Format::of_path(Path::new(file)) == Some(Format::GeoPackage) => (file, Some(layer)),
+        _ => (name, None),
+    }
+}
+
+/// The name of a file and, of a GeoPackage, its layer. The inverse of [`file_and_layer`].
+#[must_use]
+pub fn named(file: &str, layer: Option<&str>) -> String {
+    layer.map_or_else(|| file.to_owned(), |layer| format!("{file}{LAYER}{layer}"))
 }
 
 impl Format {
@@ -33,7 +53,16 @@ impl Format {
         match path.extension()?.to_ascii_lowercase().to_str()? {
             "svg" => Some(Format::Svg),
             "geojson" | "json" => Some(Format::GeoJson),
+            "gpkg" => Some(Format::GeoPackage),
             _ => None,
+        }
+    }
+
+    /// Maximum length of a file, in bytes, and memory for reading, in bytes per byte of the file.
+    fn limits(self) -> (u64, u64) {
+        match self {
+            Format::Svg | Format::GeoJson => (MAX_LENGTH, 16),
+            Format::GeoPackage => (MAX_PACKAGE, 8),
         }
     }
 }
@@ -48,21 +77,32 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// Reads the lines or the areas of a file. Takes about `allowed` bytes of memory at most.
+    /// Reads the lines or the areas of a file, or of a [layer](Drawing::parse) of it. Takes about `allowed` bytes of
+    /// memory at most.
     ///
     /// # Errors
     /// If the file cannot be read, is too large, is not valid, or does not contain any.
-    pub fn read(path: &Path, kind: DrawingKind, allowed: u64) -> Result<Drawing> {
+    pub fn read(path: &Path, layer: Option<&str>, kind: DrawingKind, allowed: u64) -> Result<Drawing> {
         let name = path.display().to_string();
         let Some(format) = Format::of_path(path) else {
             return Err(refused(
                 &name,
-                format!("the op `{}` reads .svg and .geojson; save the drawing as one of these", kind.op()),
+                format!("the op `{}` reads .svg, .geojson and .gpkg; save the drawing as one of these", kind.op()),
             ));
         };
-        let most = MAX_LENGTH.min(allowed / MEMORY_PER_BYTE);
+        if format == Format::GeoPackage && fs::metadata(log_of(path)).is_ok_and(|log| log.len() > 0) {
+            return Err(refused(
+                &name,
+                format!(
+                    "a part of it is still in {}; close the program that has it open, or export the layer to a new file",
+                    log_of(path).display()
+                ),
+            ));
+        }
+        let (longest, memory_per_byte) = format.limits();
+        let most = longest.min(allowed / memory_per_byte);
         let Some(bytes) = open::bytes(path, "read", most)? else {
-            let [most, needed] = bytes_apart(most, allowed.min(MAX_LENGTH * MEMORY_PER_BYTE));
+            let [most, needed] = bytes_apart(most, allowed.min(longest * memory_per_byte));
             return Err(refused(
                 &name,
                 format!(
@@ -70,20 +110,29 @@ impl Drawing {
                 ),
             ));
         };
-        let text = String::from_utf8(bytes).map_err(|_| refused(&name, "it is not text in UTF-8"))?;
-        Drawing::parse(&text, format, kind).map_err(|why| refused(&name, why))
+        Drawing::parse(&bytes, format, layer, kind).map_err(|why| refused(&name, why))
     }
 
-    /// Reads the lines or the areas of a text.
+    /// Reads the lines or the areas of a file's content: of a GeoPackage, those of the layer with this name; without a
+    /// name, those of the only layer that has any.
     ///
     /// # Errors
     /// A message if it is not valid, or does not contain any.
-    pub fn parse(text: &str, format: Format, kind: DrawingKind) -> std::result::Result<Drawing, String> {
+    pub fn parse(
+        content: &[u8],
+        format: Format,
+        layer: Option<&str>,
+        kind: DrawingKind,
+    ) -> std::result::Result<Drawing, String> {
         let mut collector = Collector::new(kind);
-        let text = text.trim_start_matches('\u{feff}');
+        let text = || match std::str::from_utf8(content) {
+            Ok(text) => Ok(text.trim_start_matches('\u{feff}')),
+            Err(_) => Err("it is not text in UTF-8"),
+        };
         match format {
-            Format::Svg => svg_shapes::read(text, &mut collector)?,
-            Format::GeoJson => geojson_reader::read(text, &mut collector)?,
+            Format::Svg => svg_shapes::read(text()?, &mut collector)?,
+            Format::GeoJson => geojson_reader::read(text()?, &mut collector)?,
+            Format::GeoPackage => gpkg_reader::read(content, layer, &mut collector)?,
         }
         let (elements, other) = (elements(kind, format), kind.other());
         match (collector.outlines.is_empty(), collector.others) {
@@ -109,13 +158,20 @@ impl Drawing {
     }
 }
 
+/// The write-ahead log of a database, which contains changes that are not in its file yet.
+fn log_of(path: &Path) -> PathBuf {
+    let mut log = path.as_os_str().to_owned();
+    log.push("-wal");
+    log.into()
+}
+
 /// The elements that are read.
 fn elements(kind: DrawingKind, format: Format) -> &'static str {
     match (kind, format) {
         (DrawingKind::Lines, Format::Svg) => "`path`, `polyline` and `line`",
         (DrawingKind::Areas, Format::Svg) => "`path`, `polygon`, `rect`, `circle` and `ellipse`",
-        (DrawingKind::Lines, Format::GeoJson) => "`LineString` and `MultiLineString`",
-        (DrawingKind::Areas, Format::GeoJson) => "`Polygon` and `MultiPolygon`",
+        (DrawingKind::Lines, Format::GeoJson | Format::GeoPackage) => "`LineString` and `MultiLineString`",
+        (DrawingKind::Areas, Format::GeoJson | Format::GeoPackage) => "`Polygon` and `MultiPolygon`",
     }
 }
 

@@ -80,6 +80,6 @@ pub use orogen_codec::format::{
     anvil, encoding, exr, gif, gzip, half, lerc, levels, luanti, mvt, nbt, npy, outlines, png, schem, vox, zip_writer,
 };
 pub(crate) use orogen_codec::format::{
-    conversion, coordinates, exr_block, feature_text, flatbuffer, geojson_reader, gpkg_rows, grey_rows, input,
-    metres16, number, sorted_features, sqlite, stored, svg_path, words, xyz_rows, zip,
+    conversion, coordinates, exr_block, feature_text, flatbuffer, geojson_reader, gpkg_reader, gpkg_rows, grey_rows,
+    input, metres16, number, sorted_features, sqlite, stored, svg_path, words, xyz_rows, zip,
 };

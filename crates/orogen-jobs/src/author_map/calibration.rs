@@ -229,7 +229,7 @@ fn draw(recipe: &mut Recipe, name: &str, layer: &FeatureLayer, kind: DrawingKind
     let mut text = Vec::new();
     files::write_geojson(&mut text, layer).map_err(|cause| internal(&cause.to_string()))?;
     let text = String::from_utf8(text).map_err(|cause| internal(&cause.to_string()))?;
-    let drawing = Arc::new(Drawing::parse(&text, Format::GeoJson, kind).map_err(|why| internal(&why))?);
+    let drawing = Arc::new(Drawing::parse(text.as_bytes(), Format::GeoJson, None, kind).map_err(|why| internal(&why))?);
     recipe.change(|node| {
         for file in node.files().into_iter().filter(|file| file.path().ends_with(name)) {
             file.hold_drawing(Arc::clone(&drawing));

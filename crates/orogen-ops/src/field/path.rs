@@ -18,12 +18,13 @@ op! {
     /// each point is the height of the line there. Each layer is that of the nearest point of all lines; of several at
     /// the same distance it is the first.
     ///
-    /// Files: SVG (.svg) and GeoJSON (.geojson, .json). Of SVG the elements `path`, `polyline` and `line` are read,
-    /// with the transforms of elements and groups; `use`, style sheets and units other than px are not. Coordinates are
-    /// in the user space of the document (that of its `viewBox`), with y to the south. Of GeoJSON `LineString` and
-    /// `MultiLineString` are read, also in features and collections; properties are ignored, and the third coordinate
-    /// is the height. y points north in GeoJSON and is negated. A position in the file is multiplied by `scale`, then
-    /// `offset` is added.
+    /// Files: SVG (.svg), GeoJSON (.geojson, .json) and GeoPackage (.gpkg). Of SVG the elements `path`, `polyline` and
+    /// `line` are read, with the transforms of elements and groups; `use`, style sheets and units other than px are
+    /// not. Coordinates are in the user space of the document (that of its `viewBox`), with y to the south. Of GeoJSON
+    /// and GeoPackage `LineString` and `MultiLineString` are read, also in features and collections; properties are
+    /// ignored, and the third coordinate is the height. If several layers of a GeoPackage have lines, the name of one
+    /// follows that of the file: `map.gpkg|layername=roads`. In both y points north and is negated. A position in the
+    /// file is multiplied by `scale`, then `offset` is added.
     ///
     /// With `smooth` the line is a curve through the points: a centripetal Catmull-Rom spline (Yuksel, Schaefer and
     /// Keyser 2011). Curves become straight segments that keep within `tolerance`; a drawing that would have more than
@@ -33,8 +34,8 @@ op! {
     params {
         /// Points of one line or of several, at most 100 000.
         points: LinePoints = LinePoints::default(), unit "m", range -1e9 to 1e9;
-        /// Path of an SVG or GeoJSON file with lines, in place of `points`. A relative path is resolved against the
-        /// folder of the recipe.
+        /// Path of an SVG, GeoJSON or GeoPackage file with lines, in place of `points`. A relative path is resolved
+        /// against the folder of the recipe.
         file: LineFile = LineFile::default();
         /// Metres per unit of the file, east and south.
         scale: [f64; 2] = [1.0, 1.0], range -1e6 to 1e6;
@@ -64,7 +65,7 @@ op! {
         inside: height;
     }
     check |path| match (path.points.is_empty(), path.file.0.is_empty()) {
-        (true, true) => Err(("points", "`path` needs a line: write `points`, such as `points = [[0, 0], [500, 200]]`, or name an .svg or .geojson as `file`".to_string())),
+        (true, true) => Err(("points", "`path` needs a line: write `points`, such as `points = [[0, 0], [500, 200]]`, or name an .svg, .geojson or .gpkg as `file`".to_string())),
         (false, false) => Err(("file", "`points` and `file` are both given; leave out one of them".to_string())),
         _ if path.scale.contains(&0.0) => Err(("scale", "`scale` must not be 0; it is metres per unit of the file".to_string())),
         _ => Ok(()),

@@ -19,9 +19,10 @@ op! {
     /// follows from the even-odd rule over all rings: a ring within a ring is a hole, a third one an island in it.
     /// Where two areas overlap, their common part is outside.
     ///
-    /// Files: SVG (.svg) and GeoJSON (.geojson, .json), as for `path`. Of SVG the elements `path`, `polygon`, `rect`,
-    /// `circle` and `ellipse` are read, whatever their fill; of GeoJSON `Polygon` and `MultiPolygon`. For rings that
-    /// touch, such as those of neighboring countries, the boundary is also where they touch.
+    /// Files: SVG (.svg), GeoJSON (.geojson, .json) and GeoPackage (.gpkg), as for `path`. Of SVG the elements `path`,
+    /// `polygon`, `rect`, `circle` and `ellipse` are read, whatever their fill; of GeoJSON and GeoPackage `Polygon` and
+    /// `MultiPolygon`. For rings that touch, such as those of neighboring countries, the boundary is also where they
+    /// touch.
     ///
     /// With `smooth` each ring is a curve through its points: a centripetal Catmull-Rom spline. Curves become straight
     /// segments that keep within `tolerance`; a drawing that would have more than 1 048 576 of them gets a larger
@@ -30,8 +31,8 @@ op! {
     params {
         /// Corners of one ring or of several, at most 100 000.
         points: AreaPoints = AreaPoints::default(), unit "m", range -1e9 to 1e9;
-        /// Path of an SVG or GeoJSON file with areas, in place of `points`. A relative path is resolved against the
-        /// folder of the recipe.
+        /// Path of an SVG, GeoJSON or GeoPackage file with areas, in place of `points`. A relative path is resolved
+        /// against the folder of the recipe.
         file: AreaFile = AreaFile::default();
         /// Metres per unit of the file, east and south.
         scale: [f64; 2] = [1.0, 1.0], range -1e6 to 1e6;
@@ -54,7 +55,7 @@ op! {
         height: height, unit "m";
     }
     check |polygon| match (polygon.points.is_empty(), polygon.file.0.is_empty()) {
-        (true, true) => Err(("points", "`polygon` needs an area: write `points`, such as `points = [[0, 0], [500, 0], [250, 400]]`, or name an .svg or .geojson as `file`".to_string())),
+        (true, true) => Err(("points", "`polygon` needs an area: write `points`, such as `points = [[0, 0], [500, 0], [250, 400]]`, or name an .svg, .geojson or .gpkg as `file`".to_string())),
         (false, false) => Err(("file", "`points` and `file` are both given; leave out one of them".to_string())),
         _ if polygon.scale.contains(&0.0) => Err(("scale", "`scale` must not be 0; it is metres per unit of the file".to_string())),
         _ => Ok(()),

@@ -84,7 +84,7 @@ drained_op! {
         /// of slopes, with uplift over erodibility of 0.4. Their drainage area is that of their length (Hack 1957) and
         /// of their tributaries, or of the land, if it is larger.
         rivers: LinePoints = LinePoints::default(), unit "m", range -1e9 to 1e9;
-        /// Path of an SVG or GeoJSON file with further rivers, as `file` of `path`, in metres of the world.
+        /// Path of an SVG, GeoJSON or GeoPackage file with further rivers, as `file` of `path`, in metres of the world.
         rivers_file: LineFile = LineFile::default();
         /// Whether drawn rivers are smooth curves through their points. Lines of a file that have curves stay as they
         /// are.

@@ -4,7 +4,7 @@ use crate::test_folder::TestFolder;
 
 /// The points of outlines, flattened.
 fn points(text: &str, format: Format, kind: DrawingKind) -> Vec<Vec<[f64; 2]>> {
-    let drawing = Drawing::parse(text, format, kind).unwrap_or_else(|why| panic!("{why}\n{text}"));
+    let drawing = Drawing::parse(text.as_bytes(), format, None, kind).unwrap_or_else(|why| panic!("{why}\n{text}"));
     let flattened = drawing.outlines.iter().map(|outline| {
         let mut points = vec![[outline.start[0], outline.start[1]]];
         outline.flatten(0.001, |[x, y, _]| points.push([x, y]));
@@ -23,7 +23,7 @@ fn path(data: &str) -> Vec<Vec<[f64; 2]>> {
 }
 
 fn refusal(text: &str, format: Format, kind: DrawingKind) -> String {
-    match Drawing::parse(text, format, kind) {
+    match Drawing::parse(text.as_bytes(), format, None, kind) {
         Ok(drawing) => panic!("{} outlines were read of {:.200}", drawing.outlines.len(), text),
         Err(why) => why,
     }
@@ -185,7 +185,7 @@ fn geometries_of_geojson() {
         feature(&format!(r#"{{ "type": "GeometryCollection", "geometries": [{lines}, {area}] }}"#)),
         feature(&areas),
     );
-    let read = |text: &str, kind| Drawing::parse(text, Format::GeoJson, kind).unwrap().outlines;
+    let read = |text: &str, kind| Drawing::parse(text.as_bytes(), Format::GeoJson, None, kind).unwrap().outlines;
     assert_eq!(read(line, Lines), [Outline::of_points(&[[0.0, -5.0, 0.0], [10.5, 2.0, 7.0]])]);
     assert_eq!(read(lines, Lines).len(), 2);
     assert_eq!(read(lines, Lines)[0], Outline::of_points(&[[0.0, -1.0, 2.0], [3.0, -4.0, 5.0]]));
@@ -256,13 +256,13 @@ fn malformed_files_are_refused_with_what_is_wrong() {
 #[test]
 fn large_files_take_bounded_memory() {
     let nested = svg(&format!("{}<line x2='5'/>{}", "<g>".repeat(20_000), "</g>".repeat(20_000)));
-    let read = Drawing::parse(&nested, Format::Svg, DrawingKind::Lines);
+    let read = Drawing::parse(nested.as_bytes(), Format::Svg, None, DrawingKind::Lines);
     assert!(read.is_ok_and(|drawing| drawing.outlines.len() == 1));
     let many = svg(&format!("<polyline points='{}'/>", "1 2 ".repeat(MAX_POINTS + 1)));
     assert!(refusal(&many, Format::Svg, DrawingKind::Lines).contains("more than 1048576 points"));
     let lists = format!("{{\"coordinates\":[{}[]]}}", "[],".repeat(2 * MAX_POINTS));
     assert!(refusal(&lists, Format::GeoJson, DrawingKind::Lines).contains("positions and objects"));
-    let drawing = Drawing::parse(&svg("<line x2='5'/>"), Format::Svg, DrawingKind::Lines).unwrap();
+    let drawing = Drawing::parse(svg("<line x2='5'/>").as_bytes(), Format::Svg, None, DrawingKind::Lines).unwrap();
     assert!(drawing.memory() > 0);
 }
 
@@ -271,17 +271,17 @@ fn files_by_path() {
     let folder = TestFolder::new("drawing").unwrap();
     let write = |name: &str, text: &[u8]| {
         let path = folder.join(name);
-        crate::fs::write(&path, text).unwrap();
+        fs::write(&path, text).unwrap();
         path
     };
     let line = svg("<line x2='5'/>");
-    let read = |path: &Path, allowed| Drawing::read(path, DrawingKind::Lines, allowed);
+    let read = |path: &Path, allowed| Drawing::read(path, None, DrawingKind::Lines, allowed);
     let svg_path = write("a.SVG", line.as_bytes());
     assert_eq!(read(&svg_path, 1 << 20).unwrap().outlines.len(), 1);
     let json = write("a.geojson", "\u{feff}{\"type\":\"LineString\",\"coordinates\":[[0,-0],[5,0]]}".as_bytes());
     assert_eq!(read(&json, 1 << 20).unwrap().outlines, read(&svg_path, 1 << 20).unwrap().outlines);
     for (path, message) in [
-        (write("a.txt", b""), "the op `path` reads .svg and .geojson"),
+        (write("a.txt", b""), "the op `path` reads .svg, .geojson and .gpkg"),
         (write("b.svg", b"\xff\xfe"), "it is not text in UTF-8"),
         (write("c.svg", &b" ".repeat(70_000)[..]), "more than 64 KiB"),
         (folder.join("none.svg"), "none.svg"),
@@ -291,7 +291,7 @@ fn files_by_path() {
     }
     // The hash depends on the content, not on the text.
     let [a, b, c] = ["<line x2='5'/>", "<line  y1='0' x2='5.0'/>", "<line x2='6'/>"]
-        .map(|text| Drawing::parse(&svg(text), Format::Svg, DrawingKind::Lines).unwrap().hash);
+        .map(|text| Drawing::parse(svg(text).as_bytes(), Format::Svg, None, DrawingKind::Lines).unwrap().hash);
     assert!(a == b && a != c);
 }
 
@@ -305,19 +305,97 @@ fn exported_lines_are_read_where_they_were() {
     layer.place(None);
     let mut text = Vec::new();
     crate::format::geojson::write(&mut text, &layer, Crs::Local, 10.0).unwrap();
-    let read = Drawing::parse(&String::from_utf8(text).unwrap(), Format::GeoJson, DrawingKind::Lines).unwrap();
+    let read = Drawing::parse(&text, Format::GeoJson, None, DrawingKind::Lines).unwrap();
     assert_eq!(read.outlines, [Outline::of_points(&points)]);
+}
+
+/// The folder of inputs for fuzzing. Its GeoPackage was written by GDAL.
+const CORPUS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/drawing/");
+
+#[test]
+fn layers_of_a_geopackage() {
+    let bytes = fs::read(Path::new(CORPUS).join("layers.gpkg").as_path()).unwrap();
+    let read = |layer, kind| Drawing::parse(&bytes, Format::GeoPackage, layer, kind);
+    let rivers = read(Some("rivers"), DrawingKind::Lines).unwrap().outlines;
+    let expect = [
+        vec![[0.0, 0.0, 5.0], [100.0, 50.0, 7.0], [200.0, 20.0, 9.0]],
+        vec![[10.0, 10.0, 1.0], [20.0, 20.0, 2.0]],
+        vec![[30.0, 30.0, 3.0], [40.0, 45.0, 4.0]],
+    ];
+    assert_eq!(rivers, expect.map(|points| Outline::of_points(&points)));
+    let roads = read(Some("ROADS"), DrawingKind::Lines).unwrap().outlines;
+    assert_eq!(roads, [Outline::of_points(&[[0.0, 5.0, 0.0], [50.0, 5.0, 0.0]])]);
+    // The only layer with areas, and its hole.
+    let areas = read(None, DrawingKind::Areas).unwrap().outlines;
+    assert!(areas.len() == 2 && areas.iter().all(|area| area.closed && area.pieces.len() == 4));
+    for (layer, kind, message) in [
+        (
+            None,
+            DrawingKind::Lines,
+            "it has lines in the layers `rivers`, `roads`; name one of them after the file, as in `map.gpkg|layername=rivers`",
+        ),
+        (Some("lakes"), DrawingKind::Lines, "no layer `lakes`, but the layers `rivers`, `coast`, `places`, `roads`"),
+        (Some("places"), DrawingKind::Areas, "it has no areas"),
+        (Some("roads"), DrawingKind::Areas, "the op `path` reads its 1 line"),
+    ] {
+        let why = read(layer, kind).unwrap_err();
+        assert!(why.contains(message), "{why}");
+    }
+}
+
+#[test]
+fn names_of_layers_follow_those_of_geopackages() {
+    for (name, file, layer) in [
+        ("a/map.gpkg|layername=my coast", "a/map.gpkg", Some("my coast")),
+        ("map.GPKG|layername=a|layername=b", "map.GPKG", Some("a|layername=b")),
+        ("map.gpkg", "map.gpkg", None),
+        ("map.svg|layername=a", "map.svg|layername=a", None),
+    ] {
+        assert_eq!(file_and_layer(name), (file, layer));
+        assert_eq!(named(file, layer), name);
+    }
+}
+
+#[test]
+fn a_geopackage_with_changes_elsewhere_is_refused() {
+    let folder = TestFolder::new("drawing-log").unwrap();
+    let path = folder.join("layers.gpkg");
+    fs::write(&path, fs::read(Path::new(CORPUS).join("layers.gpkg").as_path()).unwrap()).unwrap();
+    let read = || Drawing::read(&path, Some("roads"), DrawingKind::Lines, 1 << 20);
+    assert_eq!(read().unwrap().outlines.len(), 1);
+    fs::write(folder.join("layers.gpkg-wal"), b"").unwrap();
+    assert!(read().is_ok());
+    fs::write(folder.join("layers.gpkg-wal"), b"frames").unwrap();
+    assert!(read().unwrap_err().to_string().contains("close the program that has it open"));
+}
+
+#[test]
+fn exported_geopackages_are_read_where_they_were() {
+    use crate::format::features::{Crs, Feature, Geometry, GeometryType, samples};
+    let points = [[0.0, 0.0, 3.0], [120.5, 30.0, 4.5], [90.0, 410.25, 0.0]];
+    let mut lines = samples::layer("lines", GeometryType::LineZ, 300);
+    lines.features.push(Feature { geometry: Geometry::Line(points.to_vec()), ..lines.features[0].clone() });
+    let mut areas = samples::layer("areas", GeometryType::MultiPolygon, 20);
+    lines.place(None);
+    areas.place(None);
+    let mut bytes = Vec::new();
+    crate::format::gpkg::write(&mut bytes, [&lines, &areas].into_iter(), Crs::Local).unwrap();
+    let read = |kind| Drawing::parse(&bytes, Format::GeoPackage, None, kind).unwrap().outlines;
+    assert_eq!((read(DrawingKind::Lines).len(), read(DrawingKind::Areas).len()), (301, 40));
+    assert_eq!(read(DrawingKind::Lines)[300], Outline::of_points(&points));
 }
 
 #[test]
 fn damaged_files_are_read_or_refused() {
-    let corpus = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/drawing/");
     let mut random = orogen_grid::random::Random::new(11, 0);
     let (mut read, mut refused) = (0, 0);
-    for (name, format) in
-        [("shapes.svg", Format::Svg), ("lines.geojson", Format::GeoJson), ("areas.geojson", Format::GeoJson)]
-    {
-        let whole = crate::fs::read(Path::new(corpus).join(name).as_path()).unwrap();
+    for (name, format) in [
+        ("shapes.svg", Format::Svg),
+        ("lines.geojson", Format::GeoJson),
+        ("areas.geojson", Format::GeoJson),
+        ("layers.gpkg", Format::GeoPackage),
+    ] {
+        let whole = fs::read(Path::new(CORPUS).join(name).as_path()).unwrap();
         for _ in 0..4000 {
             let mut bytes = whole.clone();
             for _ in 0..=random.below(4) {
@@ -330,13 +408,12 @@ fn damaged_files_are_read_or_refused() {
                     _ => bytes[at] = b"0123456789-+eE.,[]{}<>/\"MmLlHhVvCcSsQqTtAaZz"[random.below(44)],
                 }
             }
-            let Ok(text) = String::from_utf8(bytes) else { continue };
             for kind in [DrawingKind::Lines, DrawingKind::Areas] {
-                match Drawing::parse(&text, format, kind) {
+                match Drawing::parse(&bytes, format, None, kind) {
                     Ok(drawing) => {
                         read += 1;
                         let segments = orogen_grid::polylines::segments::Segments::new(&drawing.outlines, 1e5);
-                        assert!(segments.nearest([1.0, 2.0], f64::INFINITY).is_some(), "{text}");
+                        assert!(segments.nearest([1.0, 2.0], f64::INFINITY).is_some(), "{name}");
                     }
                     Err(why) => {
                         refused += 1;
