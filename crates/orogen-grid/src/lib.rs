@@ -83,6 +83,8 @@ mod interop;
 #[doc(hidden)]
 pub mod lava;
 #[doc(hidden)]
+pub mod meanders;
+#[doc(hidden)]
 pub mod multiscale;
 #[doc(hidden)]
 pub mod parallel;

@@ -23,6 +23,7 @@ nodes! {
         Jordan,
         Label,
         Max,
+        Meanders,
         Min,
         Mix,
         Multiply,

@@ -119,6 +119,7 @@ const NOT_JUDGED: &[(&str, &str)] = &[
     ("continent", "its land is that of `endless`"),
     ("craters", "its land is that of the Moon"),
     ("dunes", "no type of real land is sand"),
+    ("floodplain", "most of its windows are too flat to be judged"),
     ("folds", "no type of real land is a fold belt"),
     ("tile-continent", "its land is made to be read as tiles"),
     ("tile-island", "its land is made to be read as tiles"),

@@ -15,6 +15,8 @@ fn part(preset: &str) -> &'static str {
         "continent" => "16824,23480,400,400",
         // Glaciers and cirques.
         "glaciers" => "430,540,400,400",
+        // Bends, an oxbow lake and a terrace.
+        "floodplain" => "560,330,400,400",
         // A front with fans, and a playa.
         "basin" => "330,130,400,400",
         // Rims and walls.

@@ -14,6 +14,7 @@
     Preset { name: "dunes", text: include_str!("../../recipes/dunes.toml") },
     Preset { name: "endless", text: include_str!("../../recipes/endless.toml") },
     Preset { name: "fjords", text: include_str!("../../recipes/fjords.toml") },
+    Preset { name: "floodplain", text: include_str!("../../recipes/floodplain.toml") },
     Preset { name: "folds", text: include_str!("../../recipes/folds.toml") },
     Preset { name: "glaciers", text: include_str!("../../recipes/glaciers.toml") },
     Preset { name: "hills", text: include_str!("../../recipes/hills.toml") },

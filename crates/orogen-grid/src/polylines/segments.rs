@@ -128,6 +128,18 @@ impl Nearest {
         self.segment.chainage + self.segment.length * self.share
     }
 
+    /// The index of the line.
+    #[must_use]
+    pub fn line(&self) -> usize {
+        self.segment.line as usize
+    }
+
+    /// The length of the line, in metres.
+    #[must_use]
+    pub fn line_length(&self) -> f64 {
+        self.line_length
+    }
+
     /// The position on the line, 0 at its start and 1 at its end.
     #[must_use]
     pub fn position(&self) -> f64 {
@@ -299,6 +311,12 @@ impl Segments {
         }
         let is_smaller = area(slanted.low, slanted.high) < 0.5 * area(node.low, node.high);
         (count >= SLANTED && is_smaller).then_some(slanted)
+    }
+
+    /// The length of all lines, in metres.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.lengths.iter().sum()
     }
 
     /// The number of segments.

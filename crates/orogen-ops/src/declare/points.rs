@@ -7,6 +7,7 @@ use super::param::Param;
 use super::point_lists::{Drawn, Form, Lists, MAX_POINTS, Reader};
 use super::spec::Shape;
 use crate::value::{Spanned, Value};
+use orogen_grid::meanders::{Floodplain, Meanders};
 use orogen_grid::multiscale::drawn_rivers::DrawnRivers;
 use orogen_grid::polylines::outline::Outline;
 use orogen_grid::polylines::segments::Segments;
@@ -27,6 +28,7 @@ pub struct PointLists<const MIN: usize> {
     form: Form,
     segments: Memo<Made>,
     rivers: Memo<MadeRivers>,
+    floodplain: Memo<MadeFloodplain>,
 }
 
 /// Options of the conversion of points, or of a file's outlines, to segments.
@@ -59,8 +61,23 @@ struct MadeRivers {
     rivers: Arc<DrawnRivers>,
 }
 
+/// A floodplain, with the rivers, the file and the options from which it was made.
+struct MadeFloodplain {
+    river: Meanders,
+    options: OutlineOptions,
+    file: Option<Arc<Drawing>>,
+    floodplain: Arc<Floodplain>,
+}
+
 /// Maximum distance between a curve of a file and the straight segments of a drawn river, in metres.
 const RIVER_TOLERANCE: f64 = 1.0;
+
+/// The points of straight segments that keep within `tolerance` of an outline.
+fn points_of(outline: &Outline, tolerance: f64) -> Vec<[f64; 3]> {
+    let mut points = vec![outline.start];
+    outline.flatten(tolerance, |point| points.push(point));
+    points
+}
 
 /// Whether two drawings are the same object, or neither is there.
 fn is_same(one: Option<&Arc<Drawing>>, other: Option<&Arc<Drawing>>) -> bool {
@@ -73,7 +90,13 @@ fn is_same(one: Option<&Arc<Drawing>>, other: Option<&Arc<Drawing>>) -> bool {
 impl<const MIN: usize> From<Vec<Vec<[f64; 3]>>> for PointLists<MIN> {
     fn from(lists: Lists) -> PointLists<MIN> {
         let form = Form { is_nested: lists.len() != 1, has_heights: true };
-        PointLists { lists: Arc::new(lists), form, segments: Memo::default(), rivers: Memo::default() }
+        PointLists {
+            lists: Arc::new(lists),
+            form,
+            segments: Memo::default(),
+            rivers: Memo::default(),
+            floodplain: Memo::default(),
+        }
     }
 }
 
@@ -117,17 +140,38 @@ impl<const MIN: usize> PointLists<MIN> {
         let drawing = file.drawing();
         let is_current = |made: &Made| is_same(made.file.as_ref(), drawing) && made.options == options;
         let make = || {
-            let own = self.lists.iter().map(|points| Outline::of_points(points));
-            let read = drawing.iter().flat_map(|drawing| &drawing.outlines);
-            let read = read.map(|outline| outline.placed(options.scale, options.offset));
-            let outlines = own.chain(read).map(|outline| {
-                let outline = if options.closed { outline.closed() } else { outline };
-                if options.smooth { outline.smoothed() } else { outline }
-            });
-            let outlines: Vec<Outline> = outlines.collect();
-            Made { options, file: drawing.cloned(), segments: Segments::new(&outlines, options.tolerance) }
+            let segments = Segments::new(&self.outlines(drawing, options), options.tolerance);
+            Made { options, file: drawing.cloned(), segments }
         };
         read(&self.segments.get_or_make(is_current, make).segments)
+    }
+
+    /// The outlines of the points and of the file.
+    fn outlines(&self, drawing: Option<&Arc<Drawing>>, options: OutlineOptions) -> Vec<Outline> {
+        let own = self.lists.iter().map(|points| Outline::of_points(points));
+        let read = drawing.into_iter().flat_map(|drawing| &drawing.outlines);
+        let read = read.map(|outline| outline.placed(options.scale, options.offset));
+        let outlines = own.chain(read).map(|outline| {
+            let outline = if options.closed { outline.closed() } else { outline };
+            if options.smooth { outline.smoothed() } else { outline }
+        });
+        outlines.collect()
+    }
+
+    /// The floodplain of rivers that start along the points and along the file's lines. It is made once, and again only
+    /// for other options.
+    pub fn floodplain(&self, file: &FileRef, options: OutlineOptions, river: Meanders) -> Arc<Floodplain> {
+        let drawing = file.drawing();
+        let is_current = |made: &MadeFloodplain| {
+            is_same(made.file.as_ref(), drawing) && made.options == options && made.river == river
+        };
+        let make = || {
+            let outlines = self.outlines(drawing, options);
+            let lines: Vec<Vec<[f64; 3]>> =
+                outlines.iter().map(|outline| points_of(outline, options.tolerance)).collect();
+            MadeFloodplain { river, options, file: drawing.cloned(), floodplain: Arc::new(river.floodplain(&lines)) }
+        };
+        Arc::clone(&self.floodplain.get_or_make(is_current, make).floodplain)
     }
 
     /// The rivers along the points and along the file's lines, which are smooth curves if `smooth` is set. A line that
@@ -141,9 +185,7 @@ impl<const MIN: usize> PointLists<MIN> {
             let read = drawing.iter().flat_map(|drawing| drawing.outlines.iter().cloned());
             let lines = own.chain(read).map(|outline| {
                 let outline = if smooth { outline.smoothed() } else { outline };
-                let mut points = vec![outline.start];
-                outline.flatten(RIVER_TOLERANCE, |point| points.push(point));
-                points
+                points_of(&outline, RIVER_TOLERANCE)
             });
             let lines: Vec<Vec<[f64; 3]>> = lines.collect();
             MadeRivers { file: drawing.cloned(), smooth, near, rivers: Arc::new(DrawnRivers::new(&lines, near)) }
@@ -159,7 +201,13 @@ impl<const MIN: usize> Param for PointLists<MIN> {
         let anywhere = [f64::NEG_INFINITY, f64::INFINITY];
         let reader = Reader { name: "", number: String::new(), drawn: Drawn::of_at_least(MIN), range: anywhere };
         let (lists, form) = reader.read(value).ok()?;
-        Some(PointLists { lists: Arc::new(lists), form, segments: Memo::default(), rivers: Memo::default() })
+        Some(PointLists {
+            lists: Arc::new(lists),
+            form,
+            segments: Memo::default(),
+            rivers: Memo::default(),
+            floodplain: Memo::default(),
+        })
     }
 
     fn write(&self) -> Value {

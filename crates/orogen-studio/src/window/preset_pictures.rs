@@ -14,6 +14,7 @@
     ("dunes", include_bytes!("../../assets/presets/dunes.png")),
     ("endless", include_bytes!("../../assets/presets/endless.png")),
     ("fjords", include_bytes!("../../assets/presets/fjords.png")),
+    ("floodplain", include_bytes!("../../assets/presets/floodplain.png")),
     ("folds", include_bytes!("../../assets/presets/folds.png")),
     ("glaciers", include_bytes!("../../assets/presets/glaciers.png")),
     ("hills", include_bytes!("../../assets/presets/hills.png")),

@@ -93,7 +93,9 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     for (i, param) in spec.params.iter().enumerate() {
         let pair = |a: f64, b: f64| Value::List([a, b].map(|n| Spanned::unplaced(Value::Number(n))).into());
         let fitted = match (spec.op, param.name) {
-            ("path" | "polygon", "points") => drawing(world.cell),
+            ("path" | "polygon" | "meanders", "points") => drawing(world.cell),
+            ("meanders", "width") => Value::Number(3.1 * world.cell),
+            ("meanders", "depth") => Value::Number(0.2 * world.cell),
             ("paint", "strokes") => strokes(world.cell).write(),
             ("path" | "polygon", "smooth") => Value::Flag(true),
             ("path" | "polygon", "tolerance") => Value::Number(0.01 * world.cell),
