@@ -97,6 +97,8 @@ pub mod progress;
 pub mod random;
 pub mod resample;
 #[doc(hidden)]
+pub mod roads;
+#[doc(hidden)]
 pub mod scattered;
 #[doc(hidden)]
 pub mod strata;

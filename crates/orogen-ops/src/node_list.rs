@@ -98,6 +98,7 @@ nodes! {
         Normalise,
         OrographicRain,
         Rivers,
+        Roads,
         SelectShare,
         StreamPower,
         Viewshed,

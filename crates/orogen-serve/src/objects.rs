@@ -1,5 +1,5 @@
-//! `/objects.geojson`: objects, rivers, lakes, summits, contours and coasts of a window, as `orogen export` writes
-//! them.
+//! `/objects.geojson`: objects, rivers, lakes, summits, contours, coasts and roads of a window, as `orogen export`
+//! writes them.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -23,13 +23,14 @@ use crate::windows::{Held, check_samples, chosen};
 pub const KIND: &str = "application/geo+json";
 
 /// The layers, by their names in requests and in exports. The first one is the default.
-pub const LAYERS: [(&str, &str); 6] = [
+pub const LAYERS: [(&str, &str); 7] = [
     ("objects", "scatter"),
     ("rivers", "rivers"),
     ("lakes", "lakes"),
     ("summits", "summits"),
     ("contours", "contours"),
     ("coast", "coast"),
+    ("roads", "roads"),
 ];
 
 /// Parameters of every layer.

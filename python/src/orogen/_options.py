@@ -251,6 +251,8 @@ class MapOptions(TypedDict, total=False):
     """Profiles in the free space of paper"""
     no_rivers: bool | None
     """Rivers"""
+    no_roads: bool | None
+    """Roads of the recipe's nodes `roads`"""
     no_scale: bool | None
     """Scale bar"""
     no_shade: bool | None

@@ -42,6 +42,7 @@ mod places;
 mod progress;
 mod refine;
 mod render;
+mod roads;
 mod scatter;
 mod serve;
 mod surfaces;

@@ -18,7 +18,7 @@ use std::sync::Arc;
 impl Engine<'_> {
     /// The solutions that a plan's steps read. They are found in the store, or computed after the solutions that their
     /// sources read. Solvers that only a stored solution would read are skipped.
-    pub(super) fn solve(&self, plan: &Plan) -> Result<Solutions> {
+    pub(crate) fn solve(&self, plan: &Plan) -> Result<Solutions> {
         let mut wanted = plan.solvers_read();
         let (mut there, mut missing) = (Solutions::new(), Vec::new());
         // Sources come first in the plan: in reverse order, all readers of a solution are known before it is looked up.

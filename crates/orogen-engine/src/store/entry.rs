@@ -19,7 +19,7 @@ use std::sync::Arc;
 const MAGIC: &[u8; 16] = b"orogen solved 1\n";
 
 /// Maximum number of layers and of numbers. No solver makes as many; a larger count means damage.
-const MOST: usize = 1 << 16;
+const MOST: usize = 1 << 20;
 
 /// Size of a stored solution, in bytes.
 pub fn length(solution: &Solution) -> u64 {

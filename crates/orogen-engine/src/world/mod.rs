@@ -7,6 +7,8 @@ pub mod objects;
 mod open;
 mod requests;
 #[doc(hidden)]
+pub mod roads;
+#[doc(hidden)]
 pub mod sampler;
 #[doc(hidden)]
 pub mod session;

@@ -1,6 +1,6 @@
 //! Solvers with their own cell.
 
-use orogen_engine::declare::Input;
+use orogen_engine::declare::{Input, LinePoints, Param};
 use orogen_engine::field::{Fbm, Multiply};
 use orogen_engine::node::Node;
 use orogen_engine::value::{Spanned, Value};
@@ -20,6 +20,13 @@ fn world_of(node: &Node, cell: f64, own: f64) -> World {
     if let Some(volume) = node.spec().params.iter().position(|param| param.name == "volume") {
         let volumes = [1e4, 1e5].map(|volume| Spanned::unplaced(Value::Number(volume)));
         node.set_param(volume, &Value::List(volumes.into())).unwrap();
+    }
+    if let Some(places) = node.spec().params.iter().position(|param| param.name == "places") {
+        let line = LinePoints::from(vec![[100.0, 100.0], [1000.0, 700.0]]);
+        node.set_param(places, &line.write()).unwrap();
+        // The sea would be half of the land.
+        let sea = node.spec().params.iter().position(|param| param.name == "sea").unwrap();
+        node.set_param(sea, &Value::Flag(false)).unwrap();
     }
     let spec = WorldSpec::default().with_seed(5).with_size(Some([1200.0, 880.0])).with_cell(cell);
     let mut recipe = Recipe::new(spec);
@@ -73,6 +80,7 @@ fn a_solver_at_its_own_cell_is_that_of_a_coarser_world() {
         "lava",
         "orographic-rain",
         "rivers",
+        "roads",
         "select-share",
         "stream-power",
     ];

@@ -144,7 +144,7 @@ fn every_solver_says_how_a_graphics_card_computes_it() {
     }
     assert_eq!(lowered, ["drainage", "fill", "height-above-drainage", "lakes", "stream-power"]);
     let processor = ["bake", "breach", "coast", "dla", "dunes", "insolation", "lava", "normalise"];
-    assert_eq!(left, [&processor[..], &["orographic-rain", "rivers", "select-share", "viewshed"]].concat());
+    assert_eq!(left, [&processor[..], &["orographic-rain", "rivers", "roads", "select-share", "viewshed"]].concat());
 }
 
 #[test]

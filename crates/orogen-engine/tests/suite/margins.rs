@@ -1,6 +1,6 @@
 //! Solvers whose domain extends beyond the world.
 
-use orogen_engine::declare::{Input, MARGIN};
+use orogen_engine::declare::{Input, LinePoints, MARGIN, Param};
 use orogen_engine::field::{Fbm, Multiply, Transform};
 use orogen_engine::laws::Laws;
 use orogen_engine::node::Node;
@@ -41,6 +41,8 @@ fn recipe_of(node: &Node, world: WorldSpec, shift: usize) -> Recipe {
     set(&mut node, "smallest", &Value::Number(500.0));
     set(&mut node, "stream", &Value::Number(3000.0));
     set(&mut node, "observer", &pair([400.0 + metres, 300.0 + metres]));
+    let places = LinePoints::from([[100.0, 100.0], [600.0, 450.0]].map(|at| at.map(|at| at + metres)).to_vec());
+    set(&mut node, "places", &places.write());
     set(&mut node, "days", &pair([80.0, 100.0]));
     // Flows shorter than the world.
     set(&mut node, "volume", &pair([1e4, 1e5]));

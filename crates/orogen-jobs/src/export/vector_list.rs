@@ -4,6 +4,7 @@
     &vectors::contours::LAYER,
     &vectors::lakes::LAYER,
     &vectors::rivers::LAYER,
+    &vectors::roads::LAYER,
     &vectors::scatter::LAYER,
     &vectors::summits::LAYER,
     &vectors::watershed::LAYER,

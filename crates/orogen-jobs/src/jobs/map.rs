@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 pub use super::drawn_map::DrawnMap;
 use super::drawn_map::numbers;
 use super::sheet_format::SheetFormat;
-use super::{finite, map_names, map_water};
+use super::{finite, map_names, map_roads, map_water};
 use crate::export::derived::list;
 use crate::export::layer_source::LayerSource;
 use crate::export::{biome_cover, sheet_cover};
@@ -330,6 +330,9 @@ impl MapJob {
             let least = [options.river_area.unwrap_or(river), options.lake_area.unwrap_or(lake)];
             options.water = Some(map_water::of(world, &window, least, 4 * window.len() as u64, &watering)?);
         }
+        if options.parts.roads {
+            options.roads = map_roads::of(world, &window, &progress.part(0.0))?;
+        }
         if self.layer != HEIGHT && !shows_biomes {
             options.coloring = Coloring::Layer(self.layer(world, &window, &mut warnings, &layering)?);
         }
@@ -454,6 +457,7 @@ impl MapJob {
         parts.contours &= is_height || self.interval.is_some() || self.levels.is_some();
         parts.summits &= is_height;
         parts.rivers &= is_height;
+        parts.roads &= is_height && world.has_roads();
         // Most depressions of a real place are gorges dammed by coarse samples, and its lakes are level in the data
         // already.
         parts.lakes &= is_height && !self.is_place;

@@ -162,6 +162,7 @@ const OPTIONS: &[OptionSpec] = &[
     part("no-summits", "Summits and their heights"),
     part("no-rivers", "Rivers"),
     part("no-lakes", "Lakes (maps of a file of heights have none)"),
+    part("no-roads", "Roads of the recipe's nodes `roads`"),
     part("no-shade", "Relief shading, as --shade none").without(&["shade"]),
     part("no-legend", "Legend"),
     part("no-color", "Color bar, or the list of surfaces, biomes or classes").with_aliases(&[
@@ -244,6 +245,7 @@ fn read(mut job: MapJob, options: &Options) -> Result<MapJob> {
     parts.summits = !without("no-summits");
     parts.rivers = !without("no-rivers");
     parts.lakes = !without("no-lakes");
+    parts.roads = !without("no-roads");
     parts.legend = !without("no-legend");
     parts.colors = !without("no-color");
     parts.scale = !without("no-scale");

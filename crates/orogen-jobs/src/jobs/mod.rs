@@ -22,6 +22,7 @@ pub mod grow;
 pub mod map;
 mod map_names;
 mod map_options;
+mod map_roads;
 #[doc(hidden)]
 pub mod map_tiles;
 pub mod map_water;

@@ -55,7 +55,7 @@ pub struct LocateJob {
 }
 
 /// What can be found.
-const FIND: &[&str] = &["ground", "summits", "lakes", "rivers", "coast", "scatter"];
+const FIND: &[&str] = &["ground", "summits", "lakes", "rivers", "coast", "roads", "scatter"];
 
 /// Default radius in worlds without bounds, in metres.
 const WITHIN: f64 = 100_000.0;
@@ -73,7 +73,9 @@ const OPTIONS: &[OptionSpec] = &[
          `area > 2km2`",
     ),
     OptionSpec::new("find", "WHAT", ValueKind::Word(FIND))
-        .with_about("What is searched: `ground`, or the objects `summits`, `lakes`, `rivers`, `coast` or `scatter`")
+        .with_about(
+            "What is searched: `ground`, or the objects `summits`, `lakes`, `rivers`, `coast`, `roads` or `scatter`",
+        )
         .with_default("ground"),
     OptionSpec::new("near", "E,N", ValueKind::Point).with_about(
         "Position that distances are measured from: easting and northing in the CRS of the heights; without a CRS, \

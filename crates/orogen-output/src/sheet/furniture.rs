@@ -5,10 +5,12 @@ use super::geometry::{Point, Rect};
 use super::labels::Label;
 use super::layout::{BLOCK_GAP, Block, MARGIN, ROW};
 use super::options::PageColors;
+use super::roads;
 use super::scene::{Item, Scene, Step, line, polygon};
 use super::symbols::{dot, triangle};
 use super::ticks::{Count, grouped, step, ticks};
 use crate::map::text::Face;
+use orogen_grid::roads::RoadKind;
 use orogen_grid::words;
 use orogen_io::palette::color::{Encoder, Rgb, decode, linear, mix, oklab};
 use orogen_io::palette::tint::Tint;
@@ -230,6 +232,10 @@ impl Desk<'_> {
                     let across = line([[x, y], [x + SIGN, y]]);
                     self.scene.lines(down.into_iter().chain([across]).collect(), 0.14, self.colors.ink, 0.8);
                 }
+                Sign::Road(kind) => {
+                    let way = [x, x + SIGN / 2.0, x + SIGN].map(|x| Point::new(x, y));
+                    roads::draw(&mut self.scene, &[(kind, way.to_vec())]);
+                }
                 Sign::Place => self.scene.area(dot(Point::new(x + SIGN / 2.0, y)), self.colors.ink, 1.0),
                 Sign::Summit => self.scene.area(triangle(Point::new(x + SIGN / 2.0, y)), self.colors.ink, 1.0),
             }
@@ -254,6 +260,8 @@ pub enum Sign {
     Line(f32, Rgb),
     /// A lake: its water and its shore.
     Water(Rgb, Rgb),
+    /// A road, a bridge or a tunnel.
+    Road(RoadKind),
     /// Lines of a coordinate grid.
     Grid,
     /// A place with a name.

@@ -6,6 +6,7 @@ use super::ground::laid;
 use super::inks::{GIVEN, THICK, THIN};
 use super::lines::{self, Summit, interval, is_thick, lines, summits, thick_interval};
 use super::options::{Page, PlaceKind, SheetOptions};
+use super::roads;
 use super::ticks::grouped;
 use super::water::{Least, Water, find};
 use orogen_grid::contour::chaikin::chaikin;
@@ -190,6 +191,10 @@ impl Linework {
         }
         if options.parts.lakes && !self.water.lakes.is_empty() {
             entries.push(Entry { sign: Sign::Water(colors.lakes(), colors.shores()), text: "Lake".into() });
+        }
+        if options.parts.roads {
+            let kinds = roads::kinds(&options.roads);
+            entries.extend(kinds.map(|(kind, text)| Entry { sign: Sign::Road(kind), text: text.into() }));
         }
         let is_named = |kind: PlaceKind| options.names.iter().any(|place| place.kind == kind);
         if is_named(PlaceKind::Place) {

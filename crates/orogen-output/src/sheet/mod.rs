@@ -33,6 +33,8 @@ pub(crate) mod ramp;
 pub mod raster;
 pub(crate) mod relief;
 #[doc(hidden)]
+pub mod roads;
+#[doc(hidden)]
 pub mod scene;
 mod symbols;
 mod taken;

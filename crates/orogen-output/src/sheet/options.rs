@@ -1,5 +1,6 @@
 //! Options of a sheet.
 
+use super::roads::MapRoad;
 use super::scene::{INK, WHITE};
 use super::water::KnownWater;
 use orogen_grid::grid::Grid;
@@ -58,6 +59,8 @@ pub struct Parts {
     pub rivers: bool,
     /// Lakes.
     pub lakes: bool,
+    /// Roads.
+    pub roads: bool,
     /// The legend.
     pub legend: bool,
     /// The color bar.
@@ -81,6 +84,7 @@ impl Default for Parts {
             summits: true,
             rivers: true,
             lakes: true,
+            roads: true,
             legend: true,
             colors: true,
             scale: true,
@@ -303,6 +307,8 @@ pub struct SheetOptions {
     pub lake_area: Option<f64>,
     /// Rivers and lakes, if they are known; by default they are found in the heights.
     pub water: Option<KnownWater>,
+    /// Roads; none by default.
+    pub roads: Vec<MapRoad>,
     /// Names of places, the most important first. Names without room are omitted.
     pub names: Vec<PlaceName>,
     /// Names along lines, the most important first. Names without room are omitted.
@@ -335,6 +341,7 @@ impl SheetOptions {
             river_area: None,
             lake_area: None,
             water: None,
+            roads: Vec::new(),
             names: Vec::new(),
             line_names: Vec::new(),
             map_scale: None,

@@ -8,10 +8,12 @@ use super::linework::Linework;
 use super::marks;
 use super::names::{LeftOut, Room};
 use super::options::SheetOptions;
+use super::roads;
 use super::scene::{Scene, Step};
 use super::taken::Taken;
 use super::ticks::grouped;
 use orogen_grid::contour::line::Line;
+use orogen_grid::roads::RoadKind;
 use orogen_io::palette::color::{Light, decode};
 use orogen_io::palette::tint::Tint;
 
@@ -70,6 +72,14 @@ impl Linework {
             false => Vec::new(),
         };
         let shore: Vec<Vec<Point>> = self.shore.iter().map(path).collect();
+        let [columns, rows] = [(0, self.grid.width()), (1, self.grid.height())]
+            .map(|(axis, count)| (count - 1) as f64 / (self.samples[axis].max(2) - 1) as f64);
+        let roads: Vec<(RoadKind, Vec<Point>)> = match options.parts.roads {
+            true => (options.roads.iter())
+                .map(|road| (road.kind, road.points.iter().map(|[x, y]| spot([x * columns, y * rows])).collect()))
+                .collect(),
+            false => Vec::new(),
+        };
         // Names and summits are drawn last, on top of the lines, but reserve their room first. Names may cross rivers
         // and shores, because harbours and towns at rivers have no other room.
         let mut over =
@@ -79,6 +89,7 @@ impl Linework {
         let names = taken.clone();
         rivers.iter().for_each(|(width, line)| taken.take_line(line, 0.35 + width / 2.0));
         lakes.iter().chain(&shore).for_each(|line| taken.take_line(line, 0.5));
+        roads.iter().for_each(|(_, line)| taken.take_line(line, roads::REACH));
         let mut room = Room { names, all: &mut taken };
         self.draw_line_names(&mut over, map, options, &rivers, &mut room, &mut left_out);
         for summit in self.summits.iter().filter(|summit| !named.contains(summit)) {
@@ -104,6 +115,7 @@ impl Linework {
         desk.scene.area(outline, desk.colors.lakes(), 1.0);
         desk.scene.lines(lakes, 0.18, desk.colors.shores(), 1.0);
         desk.scene.lines(shore, 0.22, desk.colors.shores(), 0.9);
+        roads::draw(&mut desk.scene, &roads);
         contours.draw_labels(desk);
         desk.scene.items.append(&mut over.scene.items);
         left_out

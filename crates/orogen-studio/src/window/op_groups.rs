@@ -52,7 +52,7 @@ pub static ALL: [OpGroup; 9] = [
             "altitude",
         ],
     ),
-    group("ops.draw", &["path", "polygon", "paint", "image", "label"]),
+    group("ops.draw", &["path", "polygon", "roads", "paint", "image", "label"]),
     group("ops.combine", &["add", "multiply", "mix", "min", "max", "expr"]),
     group(
         "ops.shape",

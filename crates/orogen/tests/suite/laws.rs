@@ -68,7 +68,7 @@ fn unbounded_worlds_agree_far_out_and_below_zero() {
 fn every_solver_obeys_the_laws_with_a_margin() {
     let solvers = Node::all().into_iter().filter(|node| node.margin().is_some());
     let checked = solvers.map(|node| holds(laws_of(&node).margin(10.24))).count();
-    assert_eq!(checked, 17);
+    assert_eq!(checked, 18);
 }
 
 #[test]

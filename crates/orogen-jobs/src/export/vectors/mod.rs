@@ -6,6 +6,7 @@ pub mod coast;
 pub mod contours;
 pub mod lakes;
 pub mod rivers;
+pub mod roads;
 pub mod scatter;
 pub mod summits;
 pub mod watershed;

@@ -131,6 +131,13 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ("lava", "effusion") => Value::Number(0.1 * world.cell),
             ("lava", "yield_strength") => Value::Number(2000.0 * world.cell),
             ("lava", "caldera") => Value::Number(9.0 * world.cell),
+            ("roads", "places") => drawing(world.cell),
+            ("roads", "width") => Value::Number(2.3 * world.cell),
+            ("roads", "spacing") => Value::Number(2.0 * world.cell),
+            ("roads", "radius" | "slope_width") => Value::Number(4.0 * world.cell),
+            ("roads", "longest_bridge" | "longest_tunnel") => Value::Number(60.0 * world.cell),
+            // The sea would be half of the land.
+            ("roads", "sea") => Value::Flag(false),
             ("select-height", "range") => pair(-0.1, 0.1),
             ("select-height", "falloff") => pair(0.3, 0.2),
             ("select-flow", "range") => pair(0.02, 0.1),
@@ -181,6 +188,15 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             if node.spec().op == spec.op {
                 node.set_input(0, Input::from("warm"));
                 node.set_input(1, Input::from("wet"));
+            }
+        });
+    }
+    if spec.op == "roads" {
+        // Ponds, not half of the land.
+        recipe.add("ponds", Remap { source: Input::from("in1"), to: [-2.0, 0.3], ..Remap::default() });
+        recipe.change(|node| {
+            if node.spec().op == spec.op {
+                node.set_input(1, Input::from("ponds"));
             }
         });
     }
