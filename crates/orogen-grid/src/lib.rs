@@ -69,6 +69,8 @@ pub mod contour;
 #[doc(hidden)]
 pub mod craters;
 #[doc(hidden)]
+pub mod dolines;
+#[doc(hidden)]
 pub mod dunes;
 pub mod erosion;
 pub mod error;

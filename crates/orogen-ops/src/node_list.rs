@@ -58,6 +58,7 @@ nodes! {
         Blur,
         Curvature,
         Distance,
+        Dolines,
         Droplets,
         Extrapolate,
         FlowDirection,

@@ -121,6 +121,7 @@ const NOT_JUDGED: &[(&str, &str)] = &[
     ("dunes", "no type of real land is sand"),
     ("floodplain", "most of its windows are too flat to be judged"),
     ("folds", "no type of real land is a fold belt"),
+    ("karst", "its type has one real place, too few for a unit of distance"),
     ("tile-continent", "its land is made to be read as tiles"),
     ("tile-island", "its land is made to be read as tiles"),
 ];

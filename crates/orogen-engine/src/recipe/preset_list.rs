@@ -20,6 +20,7 @@
     Preset { name: "hills", text: include_str!("../../recipes/hills.toml") },
     Preset { name: "himalaya", text: include_str!("../../recipes/himalaya.toml") },
     Preset { name: "island", text: include_str!("../../recipes/island.toml") },
+    Preset { name: "karst", text: include_str!("../../recipes/karst.toml") },
     Preset { name: "mesa", text: include_str!("../../recipes/mesa.toml") },
     Preset { name: "rolling", text: include_str!("../../recipes/rolling.toml") },
     Preset { name: "tile-continent", text: include_str!("../../recipes/tile-continent.toml") },

@@ -180,7 +180,7 @@ fn at(craters: &[Crater], position: [f64; 2], laid: &mut Vec<Laid>) -> Cratered 
 }
 
 /// A smooth step from 0 at `from` to 1 at `to`.
-fn step(from: f64, to: f64, at: f64) -> f64 {
+pub(crate) fn step(from: f64, to: f64, at: f64) -> f64 {
     let t = ((at - from) / (to - from)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }

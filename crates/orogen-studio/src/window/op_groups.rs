@@ -80,6 +80,7 @@ pub static ALL: [OpGroup; 9] = [
             "droplets",
             "thermal",
             "soil-depth",
+            "dolines",
             "glaciate",
             "glaciers",
             "dunes",

@@ -20,6 +20,7 @@
     ("hills", include_bytes!("../../assets/presets/hills.png")),
     ("himalaya", include_bytes!("../../assets/presets/himalaya.png")),
     ("island", include_bytes!("../../assets/presets/island.png")),
+    ("karst", include_bytes!("../../assets/presets/karst.png")),
     ("mesa", include_bytes!("../../assets/presets/mesa.png")),
     ("rolling", include_bytes!("../../assets/presets/rolling.png")),
     ("tile-continent", include_bytes!("../../assets/presets/tile-continent.png")),
