@@ -1,8 +1,8 @@
 //! Reads lines and areas from OGC GeoPackage (OGC 12-128r17), and their geometries in ISO well-known binary (OGC
 //! 06-103r4).
 //!
-//! Attributes, coordinate systems, points and measures are skipped. y points north in a GeoPackage, so it is negated. The
-//! third coordinate is the height.
+//! Attributes, coordinate systems, points and measures are skipped. y points north in a GeoPackage, so it is negated.
+//! The third coordinate is the height.
 
 use orogen_grid::polylines::outline::Outline;
 
@@ -19,7 +19,8 @@ const MAX_DEPTH: usize = 8;
 /// What is wrong with a geometry whose bytes end too early or have no meaning.
 const DAMAGED: &str = "a geometry is damaged";
 
-/// Reads the layer with this name into `collector`; without one, the only layer that has outlines of the requested kind.
+/// Reads the layer with this name into `collector`; without one, the only layer that has outlines of the requested
+/// kind.
 pub fn read(bytes: &[u8], layer: Option<&str>, collector: &mut Collector) -> Result<(), String> {
     let reader = Reader::new(bytes)?;
     let layers = layers(&reader)?;

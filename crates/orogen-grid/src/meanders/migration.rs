@@ -15,13 +15,13 @@ const SINUOSITY: f64 = -2.0 / 3.0;
 
 /// Maximum movement in a step, in widths, and the maximum number of steps.
 const STEP: f64 = 0.1;
-const MOST_STEPS: usize = 5000;
+const MAX_STEPS: usize = 5000;
 
 /// Distance of neighboring points, in widths.
 const SPACING: f64 = 0.5;
 
 /// Maximum number of points of a river.
-const MOST_POINTS: usize = 1 << 14;
+const MAX_POINTS: usize = 1 << 14;
 
 /// Maximum curvature, in 1 / width: bends that are tighter do not move faster.
 const TIGHTEST: f64 = 0.6;
@@ -29,8 +29,8 @@ const TIGHTEST: f64 = 0.6;
 /// Amplitude of the first bends, in widths.
 const FIRST_BENDS: f64 = 0.6;
 
-/// Curvature, in 1 / width, with which the flow enters, and the widths of nominal movement over which it changes. A flow
-/// that enters straight on would stay straight for a long way.
+/// Curvature, in 1 / width, with which the flow enters, and the widths of nominal movement over which it changes. A
+/// flow that enters straight on would stay straight for a long way.
 const ENTRY: f64 = 0.4;
 const ENTRY_TIME: f64 = 12.0;
 
@@ -54,7 +54,7 @@ pub fn migrate(river: &Meanders, line: &[[f64; 2]], index: u64) -> History {
     let valley = Valley::new(river, line);
     let [fewest, most] = COURSES;
     let courses = ((river.migration / KEPT).ceil() as usize).clamp(fewest, most);
-    let steps = ((river.migration / STEP).ceil() as usize).clamp(courses, MOST_STEPS);
+    let steps = ((river.migration / STEP).ceil() as usize).clamp(courses, MAX_STEPS);
     let every = steps.div_ceil(courses);
     // Widths of nominal movement in a step.
     let step = river.migration / steps as f64;
@@ -96,13 +96,13 @@ pub fn points_of(river: &Meanders, length: f64) -> f64 {
 /// The distance of neighboring points. Rivers that are very long for their width have fewer of them.
 fn spacing(river: &Meanders, line: &[[f64; 2]]) -> f64 {
     let length: f64 = line.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
-    (SPACING * river.width).max(LENGTHENED * length / MOST_POINTS as f64)
+    (SPACING * river.width).max(LENGTHENED * length / MAX_POINTS as f64)
 }
 
 /// Points at equal distances along a line, with its ends.
 fn spaced(line: &[[f64; 2]], spacing: f64) -> Vec<[f64; 2]> {
     let length: f64 = line.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
-    let parts = (length / spacing).round().clamp(1.0, MOST_POINTS as f64);
+    let parts = (length / spacing).round().clamp(1.0, MAX_POINTS as f64);
     let mut points = Vec::with_capacity(parts as usize + 1);
     points.extend(line.first());
     let (mut before, mut next) = (0.0, 1.0);
@@ -203,7 +203,7 @@ fn respace(points: &mut Vec<[f64; 2]>, spacing: f64) {
             continue;
         };
         let apart = distance(before, point);
-        if apart > longest && spaced.len() < 2 * MOST_POINTS {
+        if apart > longest && spaced.len() < 2 * MAX_POINTS {
             // The middle of a cubic through the neighbors: between them a bend is not straight.
             let outer = [if spaced.len() > 1 { spaced[spaced.len() - 2] } else { before }, points[(k + 1).min(last)]];
             spaced.push([0, 1].map(|i| 0.5625 * (before[i] + point[i]) - 0.0625 * (outer[0][i] + outer[1][i])));

@@ -29,8 +29,8 @@ fn bends_grow_until_they_are_cut_off() {
     }
 }
 
-/// The length of a bend and the next one in the direction of the valley is 10 to 14 widths in rivers (Leopold and Wolman
-/// 1960).
+/// The length of a bend and the next one in the direction of the valley is 10 to 14 widths in rivers (Leopold and
+/// Wolman 1960).
 #[test]
 fn bends_are_as_long_as_those_of_rivers() {
     let lengths = (0..6).map(|seed| {

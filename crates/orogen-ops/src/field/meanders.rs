@@ -15,14 +15,14 @@ op! {
     /// Rivers that meander over their floodplain: heights in metres to be added to the floor of a valley, with the
     /// channel, oxbow lakes, scroll bars and natural levees, exact at any position.
     ///
-    /// The lines of `points` or of a `file`, as for `path`, are the first courses, from the source to the mouth; each is
-    /// a river of its own, and its ends stay where they are. A river moves by the curvature of its bends and, more, by
-    /// that upstream, whose effect falls by a factor of e over `depth` / (2 `friction`) (Howard and Knutson 1984). Where
-    /// a bend comes back to itself the river cuts through the neck, and the bend becomes an oxbow lake, which fills from
-    /// its ends. Where the river moved on, it leaves scroll bars.
+    /// The lines of `points` or of a `file`, as for `path`, are the first courses, from the source to the mouth; each
+    /// is a river of its own, and its ends stay where they are. A river moves by the curvature of its bends and, more,
+    /// by that upstream, whose effect falls by a factor of e over `depth` / (2 `friction`) (Howard and Knutson 1984).
+    /// Where a bend comes back to itself the river cuts through the neck, and the bend becomes an oxbow lake, which
+    /// fills from its ends. Where the river moved on, it leaves scroll bars.
     ///
-    /// The bed is `depth` below the banks everywhere. For a bed that falls along the river, make the floor of the valley
-    /// fall with `position`.
+    /// The bed is `depth` below the banks everywhere. For a bed that falls along the river, make the floor of the
+    /// valley fall with `position`.
     pub struct Meanders = "meanders", field, revision 1;
     params {
         /// Points of one river or of several, from the source to the mouth, at most 100 000.
