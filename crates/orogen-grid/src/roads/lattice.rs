@@ -1,10 +1,7 @@
-//! The lattice of routes: its nodes, where they may be, and what moves between them cost.
+//! The lattice of routes: its nodes, where they may be, and the moves between them.
 
-use super::costs;
-use super::jumps::Jumps;
 use super::moves::MoveSet;
 use super::{Land, Roads};
-use crate::error::Result;
 use crate::grid::Window;
 use crate::parallel;
 
@@ -39,16 +36,12 @@ pub(super) struct Lattice {
     pub(super) blocked: Vec<bool>,
     /// Heights of the nodes, in metres, means around them.
     pub(super) heights: Vec<f32>,
-    /// Moves, their costs per node (the first half of the moves), and bridges and tunnels.
+    /// The moves from each node.
     pub(super) moves: MoveSet,
-    pub(super) costs: Vec<f32>,
-    pub(super) jumps: Jumps,
-    /// The least factor of the cost at a sample.
-    pub(super) least: f64,
 }
 
 impl Lattice {
-    pub(super) fn new(roads: &Roads, land: &Land) -> Result<Lattice> {
+    pub(super) fn new(roads: &Roads, land: &Land) -> Lattice {
         let window = *land.ground.window();
         let step = step_of(window.cell, roads.spacing);
         let spacing = step as f64 * window.cell;
@@ -61,9 +54,6 @@ impl Lattice {
         });
         let beside = (0.5 * roads.width / window.cell).round().clamp(1.0, 64.0) as usize;
         let blocked = grown(&window, &wet, beside);
-        let least = land.cost.map_or(1.0, |cost| {
-            cost.data().iter().map(|factor| costs::factor(*factor)).fold(f64::INFINITY, f64::min).min(1e6)
-        });
         let mut lattice = Lattice {
             window,
             step,
@@ -73,14 +63,9 @@ impl Lattice {
             blocked,
             heights: Vec::new(),
             moves: MoveSet::new(spacing, roads.radius),
-            costs: Vec::new(),
-            jumps: Jumps::default(),
-            least,
         };
         lattice.heights = parallel::samples(lattice.len(), |node| lattice.mean(land, node));
-        lattice.costs = costs::of_moves(roads, land, &lattice);
-        lattice.jumps = Jumps::new(roads, land, &lattice);
-        Ok(lattice)
+        lattice
     }
 
     /// Number of nodes.

@@ -16,6 +16,7 @@ mod network;
 mod profile;
 mod route;
 mod smooth;
+mod ways;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
@@ -144,7 +145,7 @@ impl Roads {
         }
         let legs: usize = places.iter().map(|line| line.len().saturating_sub(1)).sum();
         progress.expect(3.0 + legs as f64);
-        let lattice = Lattice::new(self, land)?;
+        let lattice = Lattice::new(self, land);
         progress.step(1.0)?;
         let lines = network::build(self, land, &lattice, places, progress)?;
         drop(lattice);

@@ -5,6 +5,7 @@ use super::lines::{RoadKind, RoadLine};
 use super::profile::{Profile, profile};
 use super::route::{Existing, Link, Search};
 use super::smooth::{Control, curve};
+use super::ways::Ways;
 use super::{Land, Roads};
 use crate::error::{Error, ErrorKind, Result};
 use crate::progress::Progress;
@@ -34,7 +35,8 @@ pub(super) fn build(
     progress: &Progress,
 ) -> Result<Vec<RoadLine>> {
     let mut network = Network { existing: Existing::default(), points: BTreeMap::new(), near: BTreeMap::new() };
-    let mut search = Search::new(roads, lattice);
+    let ways = Ways::new(roads, land, lattice);
+    let mut search = Search::new(roads, lattice, &ways);
     let mut routes: Vec<(usize, Vec<Control>)> = Vec::new();
     let mut ends: BTreeMap<u32, [f64; 2]> = BTreeMap::new();
     let origin = [lattice.window.east(0), lattice.window.south(0)];

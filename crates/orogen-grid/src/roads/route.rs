@@ -7,6 +7,7 @@ use super::heap::Heap;
 use super::lattice::Lattice;
 use super::lines::RoadKind;
 use super::moves::{COUNT, HALF, SECTORS, sector};
+use super::ways::Ways;
 use crate::error::Result;
 use crate::progress::Progress;
 use std::collections::BTreeSet;
@@ -92,14 +93,15 @@ fn between(lattice: &Lattice, from: usize, to: usize) -> [i32; 2] {
 pub(super) struct Search<'a> {
     roads: &'a Roads,
     lattice: &'a Lattice,
+    ways: &'a Ways,
     costs: Vec<f64>,
     before: Vec<u32>,
     by: Vec<u8>,
 }
 
 impl<'a> Search<'a> {
-    pub(super) fn new(roads: &'a Roads, lattice: &'a Lattice) -> Search<'a> {
-        Search { roads, lattice, costs: Vec::new(), before: Vec::new(), by: Vec::new() }
+    pub(super) fn new(roads: &'a Roads, lattice: &'a Lattice, ways: &'a Ways) -> Search<'a> {
+        Search { roads, lattice, ways, costs: Vec::new(), before: Vec::new(), by: Vec::new() }
     }
 
     /// The links of the cheapest route between two nodes, and its cost; `None` if there is none.
@@ -118,7 +120,7 @@ impl<'a> Search<'a> {
         self.before.resize(states, NONE);
         self.by.clear();
         self.by.resize(states, START);
-        let least = lattice.least.min(1.0) * if existing.moves.is_empty() { 1.0 } else { self.roads.reuse.min(1.0) };
+        let least = self.ways.least.min(1.0) * if existing.moves.is_empty() { 1.0 } else { self.roads.reuse.min(1.0) };
         let goal = lattice.place(to);
         let rest = |node: usize| {
             let [column, row] = lattice.place(node);
@@ -149,7 +151,7 @@ impl<'a> Search<'a> {
 
     /// Lowers the costs of the states that a state leads to.
     fn expand(&mut self, state: u32, existing: &Existing, mut push: impl FnMut(u32, f64)) {
-        let lattice = self.lattice;
+        let (lattice, ways) = (self.lattice, self.ways);
         let node = state as usize / SECTORS;
         let (cost, by) = (self.costs[state as usize], self.by[state as usize]);
         let came = match by {
@@ -178,15 +180,15 @@ impl<'a> Search<'a> {
             }
             let Some(to) = lattice.node([column + step[0], row + step[1]]) else { continue };
             let each = match number < HALF {
-                true => lattice.costs[node * HALF + number],
-                false => lattice.costs[to * HALF + number - HALF],
+                true => ways.costs[node * HALF + number],
+                false => ways.costs[to * HALF + number - HALF],
             };
             if each.is_finite() {
                 let share = if existing.has_move(node, number) { self.roads.reuse } else { 1.0 };
                 reach(to, lattice.moves.sectors[number], number as u8, cost + (f64::from(each) + turn) * share);
             }
         }
-        for jump in lattice.jumps.of(node) {
+        for jump in ways.jumps.of(node) {
             let step = between(lattice, node, jump.to as usize);
             let turn = if by == START { 0.0 } else { lattice.moves.turn(came, step) };
             if turn.is_finite() {
@@ -204,7 +206,7 @@ impl<'a> Search<'a> {
             let before = self.before[state];
             let [from, to] = [before as usize / SECTORS, state / SECTORS];
             let kind = (self.by[state] == JUMP).then(|| {
-                let jump = self.lattice.jumps.of(from).iter().filter(|jump| jump.to as usize == to);
+                let jump = self.ways.jumps.of(from).iter().filter(|jump| jump.to as usize == to);
                 let cheapest = jump.min_by(|a, b| a.cost.total_cmp(&b.cost));
                 cheapest.map_or(RoadKind::Bridge, |jump| jump.kind)
             });

@@ -230,9 +230,11 @@ fn a_mirrored_land_has_a_road_of_the_same_cost() {
     }
     let roads = Roads::default();
     let cost = |ground: &Grid, places: [[f64; 2]; 2]| {
-        let lattice = Lattice::new(&roads, &land(ground, None)).unwrap();
+        let land = land(ground, None);
+        let lattice = Lattice::new(&roads, &land);
+        let ways = ways::Ways::new(&roads, &land, &lattice);
         let nodes = places.map(|at| lattice.nearest(at).unwrap());
-        let mut search = route::Search::new(&roads, &lattice);
+        let mut search = route::Search::new(&roads, &lattice, &ways);
         search.run(nodes, &route::Existing::default(), &Progress::none()).unwrap().unwrap().1
     };
     let one = cost(&ground, [[100.0, 100.0], [1300.0, 1100.0]]);

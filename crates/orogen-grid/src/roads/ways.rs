@@ -1,0 +1,26 @@
+//! What moves on the lattice cost, and its bridges and tunnels.
+
+use super::costs;
+use super::jumps::Jumps;
+use super::lattice::Lattice;
+use super::{Land, Roads};
+
+/// The ways between the nodes of a lattice.
+pub(super) struct Ways {
+    /// The costs of the first half of the moves from each node.
+    pub(super) costs: Vec<f32>,
+    /// Bridges and tunnels.
+    pub(super) jumps: Jumps,
+    /// The least factor of the cost at a sample.
+    pub(super) least: f64,
+}
+
+impl Ways {
+    pub(super) fn new(roads: &Roads, land: &Land, lattice: &Lattice) -> Ways {
+        let least = land.cost.map_or(1.0, |cost| {
+            cost.data().iter().map(|factor| costs::factor(*factor)).fold(f64::INFINITY, f64::min).min(1e6)
+        });
+        let costs = costs::of_moves(roads, land, lattice);
+        Ways { costs, jumps: Jumps::new(roads, land, lattice), least }
+    }
+}
