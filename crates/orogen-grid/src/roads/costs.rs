@@ -3,7 +3,9 @@
 use super::lattice::Lattice;
 use super::moves::HALF;
 use super::{Land, Roads};
+use crate::error::Result;
 use crate::parallel;
+use crate::progress::Progress;
 
 /// Share of the maximum grade for which routes are planned: smooth curves are shorter than routes.
 const PLANNED: f64 = 0.88;
@@ -52,10 +54,11 @@ fn of_earthworks(height: f64) -> f64 {
 }
 
 /// The costs of the first half of the moves from each node; infinite where a road cannot be.
-pub(super) fn of_moves(roads: &Roads, land: &Land, lattice: &Lattice) -> Vec<f32> {
+pub(super) fn of_moves(roads: &Roads, land: &Land, lattice: &Lattice, progress: &Progress) -> Result<Vec<f32>> {
     let mut costs = vec![f32::INFINITY; lattice.len() * HALF];
-    let [columns, _] = lattice.size;
-    parallel::for_each(costs.chunks_mut(columns * HALF).enumerate(), |(row, costs)| {
+    let [columns, rows] = lattice.size;
+    progress.expect(rows as f64);
+    parallel::try_for_each(costs.chunks_mut(columns * HALF).enumerate(), |(row, costs)| {
         for (column, costs) in costs.chunks_mut(HALF).enumerate() {
             let node = row * columns + column;
             if lattice.blocked[lattice.sample(node)] {
@@ -67,8 +70,9 @@ pub(super) fn of_moves(roads: &Roads, land: &Land, lattice: &Lattice) -> Vec<f32
                 }
             }
         }
-    });
-    costs
+        progress.step(1.0)
+    })?;
+    Ok(costs)
 }
 
 /// The ground's slope at a node, east and south.

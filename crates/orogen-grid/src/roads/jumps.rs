@@ -4,7 +4,9 @@ use super::costs::of_grade;
 use super::lattice::Lattice;
 use super::lines::RoadKind;
 use super::{Land, Roads};
+use crate::error::Result;
 use crate::parallel;
+use crate::progress::Progress;
 
 /// Maximum columns and rows of a direction.
 const DIRECTIONS: i32 = 3;
@@ -39,14 +41,16 @@ pub(super) struct Jumps {
 }
 
 impl Jumps {
-    pub(super) fn new(roads: &Roads, land: &Land, lattice: &Lattice) -> Jumps {
+    pub(super) fn new(roads: &Roads, land: &Land, lattice: &Lattice, progress: &Progress) -> Result<Jumps> {
         let longest = roads.longest_bridge.max(roads.longest_tunnel);
         if longest < 2.0 * lattice.spacing {
-            return Jumps::default();
+            progress.finish();
+            return Ok(Jumps::default());
         }
         let directions = directions();
         let [columns, rows] = lattice.size;
-        let found: Vec<Vec<(u32, Jump)>> = parallel::map(0..rows, |row| {
+        progress.expect(rows as f64);
+        let found: Vec<Vec<(u32, Jump)>> = parallel::try_map(0..rows, |row| {
             let mut found = Vec::new();
             let mut own: Vec<(f64, Jump)> = Vec::new();
             for node in row * columns..(row + 1) * columns {
@@ -61,8 +65,9 @@ impl Jumps {
                 own.sort_by(|a, b| a.0.total_cmp(&b.0));
                 found.extend(own.iter().take(MOST).map(|(_, jump)| (node as u32, *jump)));
             }
-            found
-        });
+            progress.step(1.0)?;
+            Ok(found)
+        })?;
         let mut firsts = vec![0u32; lattice.len() + 1];
         for (from, jump) in found.iter().flatten() {
             firsts[*from as usize + 1] += 1;
@@ -82,7 +87,7 @@ impl Jumps {
             put(from, jump);
             put(jump.to, Jump { to: from, ..jump });
         }
-        Jumps { firsts, jumps }
+        Ok(Jumps { firsts, jumps })
     }
 
     /// The jumps from a node.

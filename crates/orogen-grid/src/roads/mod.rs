@@ -144,7 +144,8 @@ impl Roads {
             return Err(Error::new(ErrorKind::Request, "the ground, its water and its cost must have the same window"));
         }
         let legs: usize = places.iter().map(|line| line.len().saturating_sub(1)).sum();
-        progress.expect(3.0 + legs as f64);
+        // The lattice; what its ways cost; each leg; their lines; the ground, in two steps.
+        progress.expect(6.0 + legs as f64);
         let lattice = Lattice::new(self, land);
         progress.step(1.0)?;
         let lines = network::build(self, land, &lattice, places, progress)?;

@@ -35,7 +35,7 @@ pub(super) fn build(
     progress: &Progress,
 ) -> Result<Vec<RoadLine>> {
     let mut network = Network { existing: Existing::default(), points: BTreeMap::new(), near: BTreeMap::new() };
-    let ways = Ways::new(roads, land, lattice);
+    let ways = Ways::new(roads, land, lattice, &progress.part(2.0))?;
     let mut search = Search::new(roads, lattice, &ways);
     let mut routes: Vec<(usize, Vec<Control>)> = Vec::new();
     let mut ends: BTreeMap<u32, [f64; 2]> = BTreeMap::new();
@@ -74,7 +74,15 @@ pub(super) fn build(
     drop(search);
     let length: f64 = routes.iter().map(|(_, controls)| length(controls)).sum();
     let stride = (STRIDE * lattice.spacing).max(length / MAX_POINTS);
-    Ok(routes.into_iter().map(|(road, controls)| network.line(roads, land, lattice, road, &controls, stride)).collect())
+    let part = progress.part(1.0);
+    part.expect(routes.len() as f64);
+    let line = |(road, controls): (usize, Vec<Control>)| {
+        part.step(1.0)?;
+        Ok(network.line(roads, land, lattice, road, &controls, stride))
+    };
+    let lines = routes.into_iter().map(line).collect();
+    part.finish();
+    lines
 }
 
 fn length(controls: &[Control]) -> f64 {

@@ -18,7 +18,7 @@ const START: u8 = 255;
 /// The state before a start.
 const NONE: u32 = u32::MAX;
 /// States between two reports of progress.
-const STEP: usize = 1 << 13;
+const STEP: usize = 1 << 10;
 
 /// Roads that exist already.
 #[derive(Default)]

@@ -232,7 +232,7 @@ fn a_mirrored_land_has_a_road_of_the_same_cost() {
     let cost = |ground: &Grid, places: [[f64; 2]; 2]| {
         let land = land(ground, None);
         let lattice = Lattice::new(&roads, &land);
-        let ways = ways::Ways::new(&roads, &land, &lattice);
+        let ways = ways::Ways::new(&roads, &land, &lattice, &Progress::none()).unwrap();
         let nodes = places.map(|at| lattice.nearest(at).unwrap());
         let mut search = route::Search::new(&roads, &lattice, &ways);
         search.run(nodes, &route::Existing::default(), &Progress::none()).unwrap().unwrap().1

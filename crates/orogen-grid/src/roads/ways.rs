@@ -4,6 +4,8 @@ use super::costs;
 use super::jumps::Jumps;
 use super::lattice::Lattice;
 use super::{Land, Roads};
+use crate::error::Result;
+use crate::progress::Progress;
 
 /// The ways between the nodes of a lattice.
 pub(super) struct Ways {
@@ -16,11 +18,13 @@ pub(super) struct Ways {
 }
 
 impl Ways {
-    pub(super) fn new(roads: &Roads, land: &Land, lattice: &Lattice) -> Ways {
+    pub(super) fn new(roads: &Roads, land: &Land, lattice: &Lattice, progress: &Progress) -> Result<Ways> {
         let least = land.cost.map_or(1.0, |cost| {
             cost.data().iter().map(|factor| costs::factor(*factor)).fold(f64::INFINITY, f64::min).min(1e6)
         });
-        let costs = costs::of_moves(roads, land, lattice);
-        Ways { costs, jumps: Jumps::new(roads, land, lattice), least }
+        let [moving, jumping] = progress.parts([1.0, 1.0]);
+        let costs = costs::of_moves(roads, land, lattice, &moving)?;
+        let jumps = Jumps::new(roads, land, lattice, &jumping)?;
+        Ok(Ways { costs, jumps, least })
     }
 }
