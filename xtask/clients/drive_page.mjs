@@ -11,10 +11,13 @@ const { page, wrong, close } = await watched(browser, [1000, 640], new URL(url).
 /** Waits until the map has drawn everything. */
 const still = () => page.waitForFunction(() => document.body.dataset.still === 'true');
 /** Changes something, and takes a picture when it is drawn. */
-async function shot(name, act = async () => {}) {
-  await page.evaluate(() => { document.body.dataset.still = 'false'; });
-  await act();
-  await page.evaluate(() => window.dispatchEvent(new Event('resize')));
+async function shot(name, act) {
+  // Without a change nothing would be drawn again: the map may be still already.
+  if (act) {
+    await page.evaluate(() => { document.body.dataset.still = 'false'; });
+    await act();
+    await page.evaluate(() => window.dispatchEvent(new Event('resize')));
+  }
   await still();
   await page.screenshot({ path: path.join(folder, `${name}.png`), timeout: 240_000 });
 }
