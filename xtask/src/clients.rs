@@ -84,6 +84,7 @@ Only if named or with --all, because they take long or need large programs:
   wheel     the same tests of the Python package as the wheel that maturin makes
   nogil     the tests of arrays and worlds from the wheel of the free-threaded python3.14t, in four threads; needs that Python
   cesium    Cesium in Chromium shows the meshes that `orogen serve` answers: the heights of points
+  training  PyTorch trains ten steps of the network of learned detail, and makes the same land from networks as orogen
   blender   Blender imports meshes: size, summit and light are right; needs Python 3.11
 
 xtask/clients/passed.txt says when each of these last passed; a run without them prints those that are older than 14 days.
@@ -281,6 +282,7 @@ const CLIENTS: &[Client] = &[
         npm: &[],
     },
     Client { name: "godot", apt: &[], pip: &[NUMPY, "gdtoolkit==4.5.0", "godot_parser==0.1.7"], npm: &[] },
+    Client { name: "training", apt: &[], pip: &[NUMPY], npm: &[] },
     Client { name: "wheel", apt: &[], pip: &["maturin==1.16.0"], npm: &[] },
     Client { name: "nogil", apt: &[], pip: &["maturin==1.16.0"], npm: &[] },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
@@ -377,6 +379,9 @@ const ON_REQUEST: &[&Step] = &[
         noted("grass", || script_for("grass", "layers"))
     }),
     &beside("cesium", "Cesium shows the meshes that are served", || noted("cesium", || script("cesium"))),
+    &beside("training", "PyTorch trains a network, and makes the same land", || {
+        noted("training", || script("training"))
+    }),
     &beside("blender", "Blender imports meshes", || noted("blender", blender::check)),
     &beside("azure", "builds, caches and heights in Azurite's object store", || {
         noted("azure", || script_for("azure", "remote"))

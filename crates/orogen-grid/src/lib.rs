@@ -85,6 +85,8 @@ mod interop;
 #[doc(hidden)]
 pub mod lava;
 #[doc(hidden)]
+pub mod learned;
+#[doc(hidden)]
 pub mod meanders;
 #[doc(hidden)]
 pub mod multiscale;

@@ -83,6 +83,7 @@ nodes! {
     levelled {
         Amplify,
         Continents,
+        Learned,
     }
     solver {
         Bake,

@@ -17,8 +17,8 @@ use orogen::io::format::png::{self, Picture, Pixel};
 use orogen::jobs::AnalyzeJob;
 use orogen::options::Options;
 use orogen::output::map::Painter;
-use orogen::recipe::RecipeSource;
 use orogen::recipe::presets as library;
+use orogen::recipe::{Detail, RecipeSource};
 use orogen::view::{Bounds, Rectangle, Size, View};
 use orogen::world::HEIGHT;
 use orogen::{
@@ -301,8 +301,9 @@ impl World {
         })
     }
 
-    /// The same place at a smaller cell, with invented side valleys and slopes.
-    fn refined(&self, py: Python<'_>, cell: f64) -> PyResult<World> {
+    /// The same place at a smaller cell, with invented detail: learned detail if a noise is given.
+    #[pyo3(signature = (cell, noise, network))]
+    fn refined(&self, py: Python<'_>, cell: f64, noise: Option<f64>, network: String) -> PyResult<World> {
         if !self.is_place {
             return Err(refused(
                 py,
@@ -311,7 +312,11 @@ impl World {
         }
         run(py, None, |_| {
             let mut recipe = self.world.recipe().clone();
-            recipe.refine_place(cell)?;
+            let detail = match noise {
+                Some(noise) => Detail::Learned { noise, network },
+                None => Detail::Rivers,
+            };
+            recipe.refine_place(cell, &detail)?;
             let world = Arc::new(self.session.open(recipe)?);
             let (session, inputs) = (self.session.clone(), self.inputs.clone());
             Ok(World { world, session, inputs, is_place: false, notes: Vec::new() })

@@ -10,6 +10,7 @@ pub mod dem;
 pub mod drawing;
 mod edits;
 pub mod journal;
+pub mod network;
 pub mod options;
 pub mod palette;
 pub mod place;
@@ -40,6 +41,7 @@ pub const TARGETS: &[(&str, Target)] = &[
     ("dem", dem::run),
     ("drawing", drawing::run),
     ("journal", journal::run),
+    ("network", network::run),
     ("options", options::run),
     ("palette", palette::run),
     ("place", place::run),

@@ -444,15 +444,29 @@ class World:
         made: dict[str, Any] = json.loads(text)
         return made
 
-    def refined(self, cell: float) -> World:
-        """Heights of a file or an array at a smaller cell: their rivers are kept, side valleys and slopes are added.
+    def refined(
+        self,
+        cell: float,
+        detail: Literal["rivers", "learned"] = "rivers",
+        *,
+        noise: float = 1.0,
+        network: str | os.PathLike[str] | None = None,
+    ) -> World:
+        """Heights of a file or an array at a smaller cell.
+
+        With `detail="rivers"` their rivers are kept, and side valleys and slopes are added. With `detail="learned"` a
+        network adds what real land has at the smaller cell, and depressions are drained; `noise` is the share of chance,
+        from 0 (the most likely heights) to 1 (the look of real land) and 2, and `network` a file with another network.
 
         Layers: `height` and `flow` (drainage area).
         """
+        if detail not in ("rivers", "learned"):
+            raise ValueError(f"detail={detail!r} is not 'rivers' or 'learned'")
         made = World.__new__(World)
         made._name = self._name
-        made._native = self._native.refined(cell)
-        made._arguments = self._arguments | {"refined": cell}
+        share = noise if detail == "learned" else None
+        made._native = self._native.refined(cell, share, "" if network is None else os.fspath(network))
+        made._arguments = self._arguments | {"refined": {"cell": cell, "detail": detail, "noise": noise, "network": network}}
         return made
 
     def to_xarray(
@@ -694,7 +708,7 @@ def _bytes(memory: int | str | None) -> int | None:
 def _restored(arguments: dict[str, Any]) -> World:
     own = {key: value for key, value in arguments.items() if key not in ("recipe", "refined")}
     world = World(arguments["recipe"], **own)
-    return world.refined(arguments["refined"]) if "refined" in arguments else world
+    return world.refined(**arguments["refined"]) if "refined" in arguments else world
 
 
 def _choice(size: Size | None, window: Part | None, bounds: Bounds | None, cell: float | None) -> tuple[Any, ...]:

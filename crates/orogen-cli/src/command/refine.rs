@@ -6,6 +6,7 @@ use orogen::Recipe;
 use orogen::export::{ExportJob, registry};
 use orogen::grid::words::number;
 use orogen::io::file::mark;
+use orogen::recipe::Detail;
 
 use crate::declared::FormatOptions;
 use crate::failure::Failure;
@@ -27,12 +28,46 @@ pub struct Args {
     /// Layer to write: height, flow (drainage area), or a layer derived from the heights as in `export`
     #[arg(long, value_name = "L", default_value = orogen::world::HEIGHT)]
     layer: String,
+    /// How detail is made
+    #[arg(long, value_name = "HOW", default_value = "rivers")]
+    detail: How,
+    /// How much of learned detail is chance, from 0 (the most likely heights) to 1 (the look of real land) and 2
+    /// [default: 1]
+    #[arg(long, value_name = "SHARE")]
+    noise: Option<f64>,
+    /// File with a network for learned detail [default: the network that is part of Orogen]
+    #[arg(long, value_name = "FILE")]
+    network: Option<PathBuf>,
     #[command(flatten)]
     samples: View,
     #[command(flatten)]
     run: RunOptions,
     #[command(flatten)]
     options: FormatOptions,
+}
+
+/// The values of `--detail`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum How {
+    /// The rivers of the file are continued, and valleys and slopes are added between them
+    Rivers,
+    /// A network that learned from real land adds what such land has at the smaller cell, and depressions are drained
+    Learned,
+}
+
+impl Args {
+    fn detail(&self) -> Result<Detail, Failure> {
+        let noise = self.noise.unwrap_or(1.0);
+        if !(0.0..=2.0).contains(&noise) {
+            return Err(Failure::Usage(format!("--noise {noise} is not from 0 to 2")));
+        }
+        let network = self.network.as_ref().map(|file| file.display().to_string()).unwrap_or_default();
+        match self.detail {
+            How::Learned => Ok(Detail::Learned { noise, network }),
+            How::Rivers if self.noise.is_none() && network.is_empty() => Ok(Detail::Rivers),
+            How::Rivers => Err(Failure::Usage("--noise and --network need --detail learned".to_string())),
+        }
+    }
 }
 
 /// Number by which the cell is divided if none is given: the halvings up to which the result is about as realistic as
@@ -57,9 +92,10 @@ fn refine(args: &Args) -> Result<(), Failure> {
             args.place.display()
         )));
     }
+    let detail = args.detail()?;
     let Opened { mut recipe, budget, policy, .. } = args.run.read(&args.place, &args.samples)?;
     let coarse = recipe.world.cell;
-    recipe.refine_place(args.samples.cell.unwrap_or(coarse / FINER))?;
+    recipe.refine_place(args.samples.cell.unwrap_or(coarse / FINER), &detail)?;
     let sink = Sink::new(&args.out, &policy)?;
     let Some(format) = format else { return write_recipe(args, &recipe, &sink) };
     let job = ExportJob::new(format).with_layer(&args.layer).with_options(args.options.read()?);

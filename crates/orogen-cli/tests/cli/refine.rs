@@ -1,6 +1,7 @@
 //! `orogen refine`: real places at a smaller cell.
 
 use crate::harness::{Folder, npy};
+use orogen::Grid;
 
 /// An eroded range at a cell of 60 m, on the map.
 const RANGE: &str = r#"
@@ -107,6 +108,61 @@ fn the_recipe_of_a_refined_place_makes_the_same_land() {
     folder.good(&["check", "fine.toml", "-q"]);
     folder.good(&["export", "fine.toml", "-o", "again.npy", "-q"]);
     assert!(folder.read("again.npy") == folder.read("fine.npy"));
+}
+
+#[test]
+fn learned_detail_is_drained_and_depends_on_noise_and_seed() {
+    let folder = with_place();
+    let learned = |name: &str, more: &[&str]| {
+        folder
+            .good(&[&["refine", "place.tif", "--detail", "learned", "--cell", "30", "-o", name, "-q"], more].concat());
+        npy(&folder.read(name))
+    };
+    let [draw, again, other, likely] = [
+        learned("a.npy", &[]),
+        learned("b.npy", &["--noise", "1", "--threads", "1"]),
+        learned("c.npy", &["--seed", "5"]),
+        learned("d.npy", &["--noise", "0"]),
+    ];
+    assert!(draw == again);
+    let apart = |a: &Grid, b: &Grid| {
+        let sum: f64 = a.data().iter().zip(b.data()).map(|(a, b)| f64::from((a - b).abs())).sum();
+        sum / a.data().len() as f64
+    };
+    assert!(apart(&draw, &other) > apart(&draw, &likely) && apart(&draw, &likely) > 0.2);
+    // Inside there is no sample below all its neighbors.
+    let is_pit = |i: usize, j: usize| {
+        let mut around = (j - 1..=j + 1).flat_map(|y| (i - 1..=i + 1).map(move |x| (x, y))).filter(|at| *at != (i, j));
+        around.all(|at| draw[at] > draw[(i, j)])
+    };
+    for j in 1..draw.height() - 1 {
+        assert!((1..draw.width() - 1).all(|i| !is_pit(i, j)), "row {j} has a depression");
+    }
+    folder.good(&["refine", "place.tif", "--detail", "learned", "--cell", "30", "-o", "fine.toml", "-q"]);
+    folder.good(&["export", "fine.toml", "-o", "e.npy", "-q"]);
+    assert!(folder.read("e.npy") == folder.read("a.npy"));
+}
+
+#[test]
+fn other_networks_are_read_and_broken_ones_refused() {
+    let folder = with_place();
+    let network = include_bytes!("../../../../fuzz/corpus/network/small.network");
+    std::fs::write(folder.path("small.network"), network).unwrap();
+    std::fs::write(folder.path("short.network"), &network[..400]).unwrap();
+    let learned = ["refine", "place.tif", "--detail", "learned", "--cell", "30", "-q"];
+    folder.good(&[&learned[..], &["--network", "small.network", "-o", "small.npy"]].concat());
+    folder.good(&[&learned[..], &["-o", "own.npy"]].concat());
+    assert!(folder.read("small.npy") != folder.read("own.npy"));
+    for (network, expect) in [
+        ("short.network", "short.network: not a network for learned detail: it has"),
+        ("place.tif", "not a network for learned detail"),
+        ("none.network", "none.network"),
+    ] {
+        folder.bad(&[&learned[..], &["--network", network, "-o", "a.npy"]].concat(), 1, expect);
+    }
+    folder.bad(&[&learned[..], &["--noise", "3", "-o", "a.npy"]].concat(), 2, "--noise 3 is not from 0 to 2");
+    let rivers = ["refine", "place.tif", "--noise", "0", "-o", "a.npy"];
+    folder.bad(&rivers, 2, "--noise and --network need --detail learned");
 }
 
 #[test]

@@ -47,6 +47,7 @@ pub use document::{NamedNode, Recipe, WorldSpec};
 pub use graph::{Graph, GraphDiagnostic};
 pub use parameters::{Parameter, Parameters};
 pub use presets::Preset;
+pub use refined::Detail;
 pub use scatter::Scatter;
 pub use source::RecipeSource;
 pub use surface::{Coloring, Surface};

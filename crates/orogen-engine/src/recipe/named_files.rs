@@ -9,6 +9,7 @@ use orogen_io::dem::open;
 use orogen_io::dem::prepared::PreparedDem;
 use orogen_io::format::dem::Request;
 use orogen_io::format::drawing::Drawing;
+use orogen_io::format::network::NetworkWeights;
 use orogen_io::palette::histogram;
 use orogen_ops::declare::Shape;
 use orogen_ops::node::Node;
@@ -79,8 +80,9 @@ impl Recipe {
                 _ => None,
             };
             let is_drawn = node.spec().params.iter().any(|param| matches!(param.shape, Shape::Points(_)));
-            // A drawing may be in the recipe instead of a file.
-            for file in node.files().into_iter().filter(|file| !(is_drawn && file.is_empty())) {
+            // A drawing may be in the recipe instead of a file, and a network in the program.
+            let is_needless = |file: &FileRef| file.is_empty() && (is_drawn || file.kind() == FileKind::Network);
+            for file in node.files().into_iter().filter(|file| !is_needless(file)) {
                 let left = allowed.saturating_sub(self.held);
                 let location = file.location().cloned();
                 let in_node = |error: Error| {
@@ -99,6 +101,14 @@ impl Recipe {
                         self.held = self.held.saturating_add(drawing.memory());
                     }
                     file.hold_drawing(drawing);
+                    continue;
+                }
+                if path.1 == FileKind::Network {
+                    if file.content_hash().is_none() {
+                        let read = NetworkWeights::read(&path.0, left).map_err(in_node)?;
+                        self.held = self.held.saturating_add(read.memory());
+                        file.hold_network(Arc::new(read));
+                    }
                     continue;
                 }
                 let is_read = file.ground().is_some() && file.dem_file().is_none();

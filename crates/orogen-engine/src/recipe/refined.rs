@@ -6,7 +6,7 @@ use orogen_grid::words::number;
 use orogen_ops::declare::Input;
 use orogen_ops::field::Expr;
 use orogen_ops::filter::{Blur, Slope, SlopeUnit};
-use orogen_ops::levelled::Amplify;
+use orogen_ops::levelled::{Amplify, Learned};
 use orogen_ops::solver::{Bake, Breach, Drainage};
 
 /// Margin around the place in which its rivers are solved, in cells of the place, so that they leave the domain outside
@@ -35,15 +35,30 @@ const UPLIFT: &str = "log(6 * max(slope, 0.003) / (1 - min(slope / 0.9, 0.7)) * 
 /// Factor of the width of valley floors. It is small because the heights of the place have the wide floors already.
 const FLOORS: f64 = 0.2;
 
+/// How the detail of a refined place is made.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub enum Detail {
+    /// The rivers of the place are continued at the smaller cell. Side valleys and slopes are added between them, as
+    /// steep as the slopes of the place. The difference to the place's heights is then corrected smoothly.
+    #[default]
+    Rivers,
+    /// A network that has learned from real land adds its detail, by the op `learned`; then the depressions are drained
+    /// over the whole place.
+    Learned {
+        /// How much of the detail is chance: 0 makes the most likely heights, 1 the look of real land.
+        noise: f64,
+        /// Path of a file with another network; empty for the one that is part of Orogen.
+        network: String,
+    },
+}
+
 impl Recipe {
-    /// Refines a real place, a recipe of [`Recipe::from_dem`], to a smaller cell. The rivers of its heights are
-    /// continued at the smaller cell. Side valleys and slopes are added between them, as steep as the slopes of the
-    /// place. The difference to the place's heights is then corrected smoothly. The outputs are `height` and `flow`,
+    /// Refines a real place, a recipe of [`Recipe::from_dem`], to a smaller cell. The outputs are `height` and `flow`,
     /// which is solved from `height` if it is read.
     ///
     /// # Errors
     /// If the recipe is not a place, or the cell is not smaller than the place's cell, or is too small.
-    pub fn refine_place(&mut self, cell: f64) -> Result<()> {
+    pub fn refine_place(&mut self, cell: f64, detail: &Detail) -> Result<()> {
         let coarse = self.world.cell;
         let Some((_, Input::Node(place))) = self.output_inputs().iter().find(|(name, _)| name == "height").cloned()
         else {
@@ -65,10 +80,32 @@ impl Recipe {
         }
         self.world.cell = cell;
         self.about = format!("{}, refined from a cell of {} m", self.about, number(coarse));
+        let heights = match detail {
+            Detail::Rivers => self.continue_rivers(&place, coarse, halvings),
+            Detail::Learned { noise, network } => self.add_learned_detail(&place, coarse, halvings, *noise, network),
+        };
+        self.add("drainage", Drainage { source: heights.as_str().into(), ..Drainage::default() });
+        self.set_outputs(vec![("height".into(), heights.as_str().into()), ("flow".into(), "drainage.flow".into())]);
+        Ok(())
+    }
+
+    /// Adds the nodes of [`Detail::Learned`]; returns the one of the heights.
+    fn add_learned_detail(&mut self, place: &str, coarse: f64, halvings: f64, noise: f64, network: &str) -> String {
+        let cell = coarse / libm::pow(2.0, halvings);
+        let weights = network.into();
+        let learned =
+            Learned { source: place.into(), cell, halvings: halvings as u32, noise, weights, ..Learned::default() };
+        self.add("learned", learned);
+        self.add("drained", Breach { source: "learned".into(), deepest: DEEPEST, ..Breach::default() });
+        "drained".to_string()
+    }
+
+    /// Adds the nodes of [`Detail::Rivers`]; returns the one of the heights.
+    fn continue_rivers(&mut self, place: &str, coarse: f64, halvings: f64) -> String {
         let margin = MARGIN * coarse;
         self.add(
             "drained",
-            Breach { source: place.as_str().into(), deepest: DEEPEST, cell: coarse, margin, ..Breach::default() },
+            Breach { source: place.into(), deepest: DEEPEST, cell: coarse, margin, ..Breach::default() },
         );
         self.add("rivers", Drainage { source: "drained".into(), cell: coarse, margin, ..Drainage::default() });
         self.add("slope", Slope { source: "drained".into(), unit: SlopeUnit::Ratio });
@@ -94,7 +131,7 @@ impl Recipe {
         for step in 1..=CORRECTIONS {
             let [error, change, corrected] = ["error", "change", "corrected"].map(|name| format!("{name}{step}"));
             // Channels through rims are kept. Filled depressions are restored, because the place has them.
-            let error_of = Expr::new("min(drained, place) - heights").with("place", place.as_str());
+            let error_of = Expr::new("min(drained, place) - heights").with("place", place);
             self.add(&error, error_of.with("heights", heights.as_str()));
             self.add(&change, Blur { source: error.as_str().into(), radius: CORRECTION_RADIUS * coarse });
             self.add(
@@ -103,8 +140,6 @@ impl Recipe {
             );
             heights = corrected;
         }
-        self.add("drainage", Drainage { source: heights.as_str().into(), ..Drainage::default() });
-        self.set_outputs(vec![("height".into(), heights.as_str().into()), ("flow".into(), "drainage.flow".into())]);
-        Ok(())
+        heights
     }
 }

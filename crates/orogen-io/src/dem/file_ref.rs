@@ -6,9 +6,11 @@ use std::sync::Arc;
 use super::dem_file::DemFile;
 use super::prepared::PreparedDem;
 use crate::format::drawing::{Drawing, file_and_layer, named};
+use crate::format::network::NetworkWeights;
 use crate::format::outlines::DrawingKind;
 use crate::fs;
-use orogen_grid::error::Location;
+use orogen_grid::error::{Location, Result};
+use orogen_grid::learned::Network;
 
 /// A file of heights, or of another kind, named by a recipe. Its content is read once, when the world is opened; from a
 /// large file of heights, windows are read when they are requested.
@@ -20,6 +22,7 @@ pub struct FileRef {
     /// The file from which windows are read; then `ground` has no heights.
     dem_file: Option<Arc<DemFile>>,
     drawing: Option<Arc<Drawing>>,
+    network: Option<Arc<NetworkWeights>>,
     kind: FileKind,
     /// The location in the recipe's text where the file is named.
     location: Option<Box<Location>>,
@@ -35,6 +38,8 @@ pub enum FileKind {
     Picture,
     /// Lines or areas.
     Drawing(DrawingKind),
+    /// A network for learned detail.
+    Network,
 }
 
 /// A grayscale picture named by a recipe. Its content is numbers from 0 (black) to 1 (white), one metre apart.
@@ -85,6 +90,35 @@ impl From<&str> for AreaFile {
     }
 }
 
+/// A file with a network, named by a recipe. Without a file it is the network that is part of the program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NetworkFile(pub FileRef);
+
+impl Default for NetworkFile {
+    fn default() -> NetworkFile {
+        NetworkFile::from("")
+    }
+}
+
+impl From<&str> for NetworkFile {
+    fn from(path: &str) -> NetworkFile {
+        NetworkFile(FileRef { kind: FileKind::Network, ..FileRef::from(path) })
+    }
+}
+
+impl NetworkFile {
+    /// The network. Before the file was read, it is the one that is part of the program.
+    ///
+    /// # Errors
+    /// If the program was built with a broken file of weights.
+    pub fn network(&self) -> Result<&Network> {
+        match &self.0.network {
+            Some(read) => Ok(&read.network),
+            None => Network::built_in(),
+        }
+    }
+}
+
 /// Equality compares the names of files and layers, not their content.
 impl PartialEq for FileRef {
     fn eq(&self, other: &FileRef) -> bool {
@@ -131,7 +165,7 @@ impl FileRef {
     fn parts(&self) -> (&str, Option<&str>) {
         match self.kind {
             FileKind::Drawing(_) => file_and_layer(&self.path),
-            FileKind::Heights | FileKind::Picture => (&self.path, None),
+            FileKind::Heights | FileKind::Picture | FileKind::Network => (&self.path, None),
         }
     }
 
@@ -205,9 +239,16 @@ impl FileRef {
         self.drawing = Some(drawing);
     }
 
+    /// Sets the network.
+    pub fn hold_network(&mut self, network: Arc<NetworkWeights>) {
+        self.network = Some(network);
+    }
+
     /// The hash of the content, if it was read.
     #[must_use]
     pub fn content_hash(&self) -> Option<&[u8; 32]> {
-        self.ground.as_ref().map(|ground| &ground.hash).or(self.drawing.as_ref().map(|drawing| &drawing.hash))
+        let of_ground = self.ground.as_ref().map(|ground| &ground.hash);
+        let of_drawing = || self.drawing.as_ref().map(|drawing| &drawing.hash);
+        of_ground.or_else(of_drawing).or_else(|| self.network.as_ref().map(|network| &network.hash))
     }
 }

@@ -36,6 +36,7 @@ pub mod hgt;
 #[doc(hidden)]
 pub mod import;
 pub(crate) mod netcdf;
+pub mod network;
 mod noted;
 #[doc(hidden)]
 pub mod notes;

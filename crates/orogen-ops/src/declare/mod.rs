@@ -45,7 +45,7 @@ pub use input::{Input, InputName};
 #[doc(hidden)]
 pub use input::{named, set_named};
 pub use orogen_grid::strata::Stratum;
-pub use orogen_io::dem::file_ref::{AreaFile, FileRef, LineFile};
+pub use orogen_io::dem::file_ref::{AreaFile, FileRef, LineFile, NetworkFile};
 #[doc(hidden)]
 pub use param::AnyParam;
 pub use param::{Param, read_param};

@@ -41,6 +41,7 @@ pub static ALL: [OpGroup; 9] = [
         &[
             "continents",
             "amplify",
+            "learned",
             "dla",
             "dem",
             "craters",

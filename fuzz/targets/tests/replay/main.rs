@@ -29,6 +29,7 @@ replays! {
     dem: 60000,
     drawing: 100000,
     journal: 2000,
+    network: 2000,
     options: 30000,
     palette: 60000,
     place: 40000,

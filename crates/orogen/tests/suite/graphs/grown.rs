@@ -1,7 +1,7 @@
 //! Recipes drawn at random from the declarations of all ops. New ops are included automatically.
 
 use super::values::value;
-use crate::support::{DEM, DRAWINGS, PICTURE, Random};
+use crate::support::{DEM, DRAWINGS, NETWORK, PICTURE, Random};
 use orogen::declare::{Input, Locality};
 use orogen::io::dem::FileKind;
 use orogen::io::format::outlines::DrawingKind;
@@ -110,6 +110,7 @@ fn with_node(recipe: &Recipe, op: &Node, random: &mut Random) -> Recipe {
         Some(FileKind::Picture) => PICTURE,
         Some(FileKind::Drawing(DrawingKind::Lines)) => DRAWINGS[0],
         Some(FileKind::Drawing(DrawingKind::Areas)) => DRAWINGS[1],
+        Some(FileKind::Network) => NETWORK,
         _ => DEM,
     };
     for (i, spec) in op.spec().params.iter().enumerate() {

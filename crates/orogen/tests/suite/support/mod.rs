@@ -48,6 +48,9 @@ pub const DEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/de
 /// A gray picture for the `image` node.
 pub const PICTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/dem/grey.png");
 
+/// A network for the `learned` node.
+pub const NETWORK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../orogen-grid/src/learned/land.network");
+
 /// Lines and areas for nodes that draw.
 pub const DRAWINGS: [&str; 2] = [
     concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/drawing/lines.geojson"),

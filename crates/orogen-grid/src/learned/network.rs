@@ -1,0 +1,232 @@
+//! Fine heights from coarse ones, row by row.
+
+use super::convolution::Row;
+use super::features::{self, Features};
+use super::weights::{FEATURES, NOISES, PHASES, Weights};
+use crate::error::{Error, ErrorKind, Result};
+use crate::grid::{Grid, Window};
+use crate::progress::Progress;
+use orogen_simd::dispatch;
+use std::sync::OnceLock;
+
+/// The fine cell, in metres, at which the octave is 0.
+const CELL: f64 = 75.0;
+
+/// A network that makes heights at half the cell of given ones.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Network {
+    weights: Weights,
+}
+
+/// Which of the lands that fit the coarse heights is made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Draw {
+    /// Seed of the noise.
+    pub seed: u64,
+    /// Number of halvings before; each has a noise of its own.
+    pub level: usize,
+    /// Factor of the noise: 0 makes the most likely heights, 1 the look of real land.
+    pub noise: f32,
+}
+
+impl Network {
+    /// The network whose weights are part of the program.
+    ///
+    /// # Errors
+    /// If the program was built with a broken file of weights.
+    pub fn built_in() -> Result<&'static Network> {
+        static NETWORK: OnceLock<Result<Network>> = OnceLock::new();
+        NETWORK.get_or_init(|| Network::parse(include_bytes!("land.network"))).as_ref().map_err(Clone::clone)
+    }
+
+    /// A network from a file of weights.
+    ///
+    /// # Errors
+    /// If the file is none of a network, of another format, incomplete, or changed.
+    pub fn parse(file: &[u8]) -> Result<Network> {
+        Ok(Network { weights: Weights::parse(file)? })
+    }
+
+    /// Number of coarse samples that a fine one reads on each side.
+    #[must_use]
+    pub fn halo(&self) -> usize {
+        features::REACH + self.weights.layers.len()
+    }
+
+    /// Memory that [`Network::refine`] needs beside its result, for coarse heights of this size, in bytes.
+    #[must_use]
+    pub fn scratch(&self, width: usize, height: usize) -> u64 {
+        // Planes: smooth heights and squares with the rows of a pass each, and six features.
+        let planes = 10 * 4 * (width as u64).saturating_mul(height as u64);
+        let rows = 4 * self.rows_in_memory() as u64 * (width as u64) * self.weights.channels as u64;
+        planes.saturating_add(rows)
+    }
+
+    fn rows_in_memory(&self) -> usize {
+        3 * self.weights.layers.len() + 1
+    }
+
+    /// The heights of `window`, whose cell is half that of the coarse heights. Sample 2 i of the window is at coarse
+    /// sample i, and coarse samples up to [`Network::halo`] from there are read.
+    ///
+    /// # Errors
+    /// If the coarse heights cover too little, or the work is cancelled.
+    pub fn refine(&self, coarse: &Grid, window: &Window, draw: &Draw, progress: &Progress) -> Result<Grid> {
+        if window.is_empty() {
+            return Ok(Grid::filled(*window, 0.0));
+        }
+        let reach = self.halo();
+        let nodes = nodes_of(window, coarse.window().cell);
+        let read = nodes.grown(reach);
+        let coarse = coarse.crop(&read).ok_or_else(|| {
+            Error::new(ErrorKind::Internal, format!("learned detail reads {read:?}, and has {:?}", coarse.window()))
+        })?;
+        progress.expect(nodes.height as f64);
+        let mut out = Grid::filled(*window, 0.0);
+        let features = Features::of(&coarse);
+        let mut layers = Layers::new(self, &features, &read, draw);
+        for j in 0..nodes.height {
+            let residuals = layers.row(j);
+            for phase in 0..2 {
+                let y = 2 * (nodes.y + j as i64) + phase as i64;
+                if let Some(row) = usize::try_from(y - window.y).ok().filter(|row| *row < window.height) {
+                    let fine = Fine { coarse: &coarse, features: &features, reach, node: j, phase, residuals };
+                    fine.row(window.x - 2 * nodes.x, out.row_mut(row));
+                }
+            }
+            progress.step(1.0)?;
+        }
+        Ok(out)
+    }
+}
+
+/// The coarse samples at, or to the north-west of, the samples of a window.
+fn nodes_of(window: &Window, cell: f64) -> Window {
+    let [x, y] = [window.x, window.y].map(|first| first.div_euclid(2));
+    let [right, bottom] = [window.right(), window.bottom()].map(|end| (end - 1).div_euclid(2) + 1);
+    Window { x, y, width: (right - x) as usize, height: (bottom - y) as usize, cell }
+}
+
+/// The layers of a network; each keeps the last three rows that it made.
+struct Layers<'a> {
+    network: &'a Network,
+    features: &'a Features,
+    /// The coarse samples that are read.
+    read: &'a Window,
+    draw: &'a Draw,
+    octave: f32,
+    /// Rows of the features and of each layer, by their number modulo 3, and how many were made.
+    kept: Vec<[Vec<f32>; 3]>,
+    made: Vec<usize>,
+    /// The residuals of the last row, for each node.
+    residuals: Vec<[f32; PHASES]>,
+}
+
+impl<'a> Layers<'a> {
+    fn new(network: &'a Network, features: &'a Features, read: &'a Window, draw: &'a Draw) -> Layers<'a> {
+        let Weights { channels, layers, cells: [least, greatest], .. } = &network.weights;
+        let fine = (0.5 * read.cell).clamp(*least, *greatest);
+        let octave = (0.5 * libm::log2(fine / CELL)) as f32;
+        let row = |layer: usize| {
+            let values = if layer == 0 { FEATURES + NOISES } else { *channels };
+            std::array::from_fn(|_| vec![0.0; (features.width - 2 * layer) * values])
+        };
+        let kept = (0..=layers.len()).map(row).collect();
+        let nodes = features.width - 2 * layers.len();
+        let residuals = vec![[0.0; PHASES]; nodes];
+        Layers { network, features, read, draw, octave, kept, made: vec![0; layers.len() + 1], residuals }
+    }
+
+    /// The residuals of a row of nodes, in units of the scale. Rows are made in order.
+    fn row(&mut self, j: usize) -> &[[f32; PHASES]] {
+        let last = self.network.weights.layers.len();
+        self.make(last, j);
+        let Weights { channels, phases, offsets, .. } = &self.network.weights;
+        let values = self.kept[last][j % 3].chunks_exact(*channels);
+        for (out, values) in self.residuals.iter_mut().zip(values) {
+            let mut sums = *offsets;
+            for (value, weights) in values.iter().zip(phases) {
+                sums.iter_mut().zip(weights).for_each(|(sum, weight)| *sum += weight * value);
+            }
+            *out = sums;
+        }
+        &self.residuals
+    }
+
+    /// Makes the rows of a layer up to row `j`.
+    fn make(&mut self, layer: usize, j: usize) {
+        while self.made[layer] <= j {
+            let row = self.made[layer];
+            let mut out = std::mem::take(&mut self.kept[layer][row % 3]);
+            if let Some(above) = layer.checked_sub(1) {
+                self.make(above, row + 2);
+                let inputs = [row, row + 1, row + 2].map(|row| self.kept[above][row % 3].as_slice());
+                let is_residual = above > 0;
+                dispatch(Row { layer: &self.network.weights.layers[above], inputs, is_residual, out: &mut out });
+            } else {
+                let [x, y] = [self.read.x, self.read.y + row as i64].map(|first| first + features::REACH as i64);
+                let Draw { seed, level, noise } = *self.draw;
+                let noise_at = |i: usize| match noise {
+                    0.0 => [0.0; NOISES],
+                    _ => features::noise(seed, level, x + i as i64, y).map(|value| noise * value),
+                };
+                self.features.row(row, self.octave, noise_at, &mut out);
+            }
+            self.kept[layer][row % 3] = out;
+            self.made[layer] += 1;
+        }
+    }
+}
+
+/// A row of fine samples: those at a row of nodes (phase 0), or between it and the next one (phase 1).
+struct Fine<'a> {
+    coarse: &'a Grid,
+    features: &'a Features,
+    /// Coarse samples before the first node.
+    reach: usize,
+    node: usize,
+    phase: usize,
+    residuals: &'a [[f32; PHASES]],
+}
+
+impl Fine<'_> {
+    /// The heights from fine sample `first`, counted from the first node.
+    fn row(&self, first: i64, out: &mut [f32]) {
+        let cell = self.coarse.window().cell as f32;
+        // The features begin at this node of theirs.
+        let (inset, width) = (self.reach - features::REACH, self.features.width);
+        let nodes = [0, 1].map(|below| (self.node + inset + below) * width + inset);
+        for (sample, out) in (first as usize..).zip(out) {
+            let (i, phase) = (sample / 2, sample % 2);
+            let [scale, calm] = [&self.features.scale, &self.features.calm].map(|plane| {
+                let [north, south] = nodes.map(|at| between(plane[at + i], plane[at + i + 1], phase));
+                between(north, south, self.phase)
+            });
+            let residual = self.residuals[i][2 * self.phase + phase];
+            *out = self.smooth(i, phase) + residual * scale * (1.0 - calm) * 0.5 * cell;
+        }
+    }
+
+    /// Cubic interpolation of the heights.
+    fn smooth(&self, i: usize, phase: usize) -> f32 {
+        let (column, row) = (i + self.reach, self.node + self.reach);
+        let along = |row: usize| {
+            let row = &self.coarse.row(row)[column - 1..column + 3];
+            cubic([row[0], row[1], row[2], row[3]], phase)
+        };
+        match self.phase {
+            0 => along(row),
+            _ => cubic([row - 1, row, row + 1, row + 2].map(along), 1),
+        }
+    }
+}
+
+/// The first of two values, or their mean.
+fn between(first: f32, second: f32, phase: usize) -> f32 {
+    if phase == 0 { first } else { (first + second) * 0.5 }
+}
+
+/// The second of four values, or the interpolating cubic in the middle.
+fn cubic([a, b, c, d]: [f32; 4], phase: usize) -> f32 {
+    if phase == 0 { b } else { (b + c) * 0.5 + ((b - a) + (c - d)) * 0.0625 }
+}
