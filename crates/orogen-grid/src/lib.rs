@@ -75,6 +75,8 @@ pub mod dunes;
 pub mod erosion;
 pub mod error;
 #[doc(hidden)]
+pub mod exemplar;
+#[doc(hidden)]
 pub mod glaciation;
 pub mod grid;
 #[doc(hidden)]

@@ -13,6 +13,7 @@ nodes! {
         Dem,
         Edge,
         Evapotranspiration,
+        Exemplar,
         Expr,
         Fbm,
         GraphInput,

@@ -12,6 +12,7 @@ use orogen_io::format::drawing::Drawing;
 use orogen_io::format::network::NetworkWeights;
 use orogen_io::palette::histogram;
 use orogen_ops::declare::Shape;
+use orogen_ops::field::{Dem, Exemplar};
 use orogen_ops::node::Node;
 use orogen_ops::op::Op;
 use std::collections::BTreeMap;
@@ -76,7 +77,7 @@ impl Recipe {
         self.held = 0;
         for NamedNode { name, node, .. } in &mut self.nodes {
             let band = match node {
-                Node::Dem(dem) if dem.band > 0 => Some(dem.band),
+                Node::Dem(Dem { band, .. }) | Node::Exemplar(Exemplar { band, .. }) if *band > 0 => Some(*band),
                 _ => None,
             };
             let is_drawn = node.spec().params.iter().any(|param| matches!(param.shape, Shape::Points(_)));
@@ -90,7 +91,7 @@ impl Recipe {
                     let diagnostic = Diagnostic::new(message).with_place(location.clone());
                     Error::from_diagnostics(ErrorKind::File, vec![diagnostic])
                 };
-                let path = (file.path(), file.kind(), band);
+                let path = (file.path(), file.content(), band);
                 if let FileKind::Drawing(kind) = path.1 {
                     let key = (path.0, file.layer().map(str::to_owned), path.1);
                     let drawing = match file.drawing().or(drawings.get(&key)) {
@@ -113,7 +114,7 @@ impl Recipe {
                 }
                 let is_read = file.ground().is_some() && file.dem_file().is_none();
                 if let Some(above) = windows_above
-                    && path.1 == FileKind::Heights
+                    && file.kind() == FileKind::Heights
                     && !is_read
                 {
                     let key = (path.0.clone(), band);
@@ -143,6 +144,15 @@ impl Recipe {
                     self.held = self.held.saturating_add(ground.memory());
                 }
                 file.hold(ground);
+            }
+            if let Node::Exemplar(exemplar) = node {
+                let left = allowed.saturating_sub(self.held);
+                let memory = exemplar.check_file(left).map_err(|message| {
+                    let diagnostic = Diagnostic::new(format!("node `{name}`: {message}"));
+                    let diagnostic = diagnostic.with_place(exemplar.path.file().location().cloned());
+                    Error::from_diagnostics(ErrorKind::File, vec![diagnostic])
+                })?;
+                self.held = self.held.saturating_add(memory);
             }
         }
         for Expanded { surface, colors, .. } in &mut self.expanded {

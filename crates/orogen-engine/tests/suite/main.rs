@@ -3,6 +3,7 @@
 
 mod cells;
 mod drawings;
+mod exemplar_in_recipes;
 mod levelled;
 mod lowering;
 mod margins;

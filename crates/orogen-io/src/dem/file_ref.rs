@@ -36,6 +36,8 @@ pub enum FileKind {
     Heights,
     /// A grayscale picture.
     Picture,
+    /// A grayscale picture if it is a .png, otherwise heights, of which no part is enough.
+    Exemplar,
     /// Lines or areas.
     Drawing(DrawingKind),
     /// A network for learned detail.
@@ -139,10 +141,29 @@ impl FileRef {
         self.path.is_empty()
     }
 
+    /// A file of this kind.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn with_kind(self, kind: FileKind) -> FileRef {
+        FileRef { kind, ..self }
+    }
+
     /// What the file is read as.
     #[must_use]
     pub fn kind(&self) -> FileKind {
         self.kind
+    }
+
+    /// What the content of the file is: heights, a picture or a drawing.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn content(&self) -> FileKind {
+        let is_png = Path::new(&self.path).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+        match self.kind {
+            FileKind::Exemplar if is_png => FileKind::Picture,
+            FileKind::Exemplar => FileKind::Heights,
+            kind => kind,
+        }
     }
 
     /// The path: a relative one is relative to the folder of the recipe or, if the recipe is not a file, to the working
@@ -165,7 +186,7 @@ impl FileRef {
     fn parts(&self) -> (&str, Option<&str>) {
         match self.kind {
             FileKind::Drawing(_) => file_and_layer(&self.path),
-            FileKind::Heights | FileKind::Picture | FileKind::Network => (&self.path, None),
+            FileKind::Heights | FileKind::Picture | FileKind::Exemplar | FileKind::Network => (&self.path, None),
         }
     }
 

@@ -7,6 +7,7 @@
 //! - [`input`]: inputs of nodes
 //! - [`param`]: the types that parameters can have
 //! - [`points`]: lists of points as parameters, and their segments; [`memo`]: values computed from parameters once
+//! - [`exemplar_file`]: a file whose texture is spread
 //! - [`strokes`]: strokes of a brush as a parameter; [`strata`]: strata of rock; `tables` reads such lists of tables
 //! - [`declared`]: the trait that every op implements by its declaration
 //! - `macros`: [`op!`](crate::op!) and [`choice!`](crate::choice), which generate all of this
@@ -16,6 +17,8 @@ mod macros;
 
 #[doc(hidden)]
 pub mod declared;
+#[doc(hidden)]
+pub mod exemplar_file;
 #[doc(hidden)]
 pub mod input;
 #[doc(hidden)]
@@ -41,6 +44,8 @@ pub mod noise {
 }
 
 pub use declared::Declared;
+#[doc(hidden)]
+pub use exemplar_file::ExemplarFile;
 pub use input::{Input, InputName};
 #[doc(hidden)]
 pub use input::{named, set_named};

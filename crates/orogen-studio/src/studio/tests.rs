@@ -60,7 +60,7 @@ fn edit(recipe: &Recipe, selected: &[String], random: &mut Random) -> Option<Edi
             let ops: Vec<&str> = Node::all()
                 .iter()
                 .map(|node| node.spec().op)
-                .filter(|op| !matches!(*op, "dem" | "image" | "dla"))
+                .filter(|op| !matches!(*op, "dem" | "exemplar" | "image" | "dla"))
                 .collect();
             let op = *random.of(&ops)?;
             let taken = names.iter().map(String::as_str).collect();

@@ -44,6 +44,7 @@ pub static ALL: [OpGroup; 9] = [
             "learned",
             "dla",
             "dem",
+            "exemplar",
             "craters",
             "meanders",
             "radial",

@@ -173,6 +173,10 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ),
             ("dem", "path") => Value::Text(DEM.into()),
             ("image", "path") => Value::Text(PICTURE.into()),
+            // 37 x 23 samples.
+            ("exemplar", "path") => Value::Text(DEM.into()),
+            ("exemplar", "cell") => Value::Number(1.7 * world.cell),
+            ("exemplar", "rotate") => Value::Flag(true),
             ("dem", "at") => pair(17.3 * world.cell, -5.1 * world.cell),
             ("dem", "fade") => Value::Number(20.0 * world.cell),
             ("transform", "angle") => Value::Number(33.0),
