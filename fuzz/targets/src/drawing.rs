@@ -8,7 +8,7 @@ use orogen::io::format::outlines::DrawingKind;
 /// Runs the target on an input.
 pub fn run(input: &[u8]) {
     for format in [Format::Svg, Format::GeoJson, Format::GeoPackage] {
-        for kind in [DrawingKind::Lines, DrawingKind::Areas] {
+        for kind in [DrawingKind::Lines, DrawingKind::Areas, DrawingKind::Ridges] {
             let Ok(drawing) = Drawing::parse(input, format, None, kind) else { continue };
             assert!(!drawing.outlines.is_empty());
             for is_smooth in [false, true] {

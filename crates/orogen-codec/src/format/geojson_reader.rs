@@ -1,16 +1,17 @@
 //! Reads lines and areas from GeoJSON (RFC 7946).
 //!
-//! A file can be a geometry, a feature, or a collection of either. Properties, coordinate systems and points are
-//! skipped. y points north in GeoJSON, so it is negated. The third coordinate is the height.
+//! A file can be a geometry, a feature, or a collection of either. Coordinate systems are skipped, and points and
+//! properties other than heights, which only ridges have. y points north in GeoJSON, so it is negated. The third
+//! coordinate is the height.
 
 use std::cell::Cell;
 use std::fmt;
 use std::marker::PhantomData;
 
 use orogen_grid::polylines::outline::Outline;
-use serde::de::{self, DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde::de::{self, Deserialize, DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
-use super::outlines::{Collector, DrawingKind, MAX_POINTS};
+use super::outlines::{Collector, DrawingKind, MAX_POINTS, height_rank};
 
 /// Maximum number of objects, lists and positions in a file.
 const MAX_ITEMS: usize = 2 * MAX_POINTS;
@@ -30,9 +31,15 @@ pub fn read(text: &str, collector: &mut Collector) -> Result<(), String> {
 
 /// Recursion is bounded, because the parser rejects deep nesting.
 fn geometry(object: &Object, collector: &mut Collector) -> Result<(), String> {
-    use DrawingKind::{Areas, Lines};
+    use DrawingKind::{Areas, Lines, Ridges};
+    if let Some((_, height)) = object.height {
+        collector.height = Some(height);
+    }
     for inner in object.geometry.as_deref().into_iter().chain(&object.objects) {
         geometry(inner, collector)?;
+    }
+    if object.kind.as_deref() == Some("Feature") {
+        collector.height = None;
     }
     let Some(kind) = object.kind.as_deref() else { return Ok(()) };
     let (depth, kinds) = match kind {
@@ -40,12 +47,24 @@ fn geometry(object: &Object, collector: &mut Collector) -> Result<(), String> {
         "MultiLineString" => (2, [Lines]),
         "Polygon" => (2, [Areas]),
         "MultiPolygon" => (3, [Areas]),
+        "Point" | "MultiPoint" if collector.kind() == Ridges => {
+            let Some(coordinates) = &object.coordinates else { return Err(format!("a {kind} has no coordinates")) };
+            return collector.take(&[Ridges], points(coordinates).map_err(|why| format!("a {kind}: {why}"))?);
+        }
         _ => return Ok(()),
     };
     let Some(coordinates) = &object.coordinates else { return Err(format!("a {kind} has no coordinates")) };
     let mut outlines = Vec::new();
     lines(coordinates, depth, &mut outlines).map_err(|why| format!("a {kind}: {why}"))?;
     collector.take(&kinds, outlines)
+}
+
+/// The points in lists.
+fn points(coordinates: &Coordinates) -> Result<Vec<Outline>, String> {
+    match coordinates {
+        Coordinates::Position([x, y, z]) => Ok(vec![Outline::of_points(&[[*x, -y, *z]])]),
+        Coordinates::List(items) => Ok(items.iter().map(points).collect::<Result<Vec<_>, _>>()?.concat()),
+    }
 }
 
 /// The lines in nested lists. At depth 1 the list consists of positions.
@@ -75,6 +94,8 @@ struct Object {
     geometry: Option<Box<Object>>,
     /// Features or geometries.
     objects: Vec<Object>,
+    /// The height among the properties, and its rank.
+    height: Option<(usize, f64)>,
 }
 
 enum Coordinates {
@@ -114,6 +135,10 @@ struct OptionalObject;
 #[derive(Clone, Copy)]
 struct ObjectList;
 
+/// The properties of a feature, of which only the height is read.
+#[derive(Clone, Copy)]
+struct Properties;
+
 #[derive(Clone, Copy)]
 struct CoordinatesVisitor;
 
@@ -150,6 +175,7 @@ impl<'de> Visitor<'de> for Seed<'_, ObjectVisitor> {
                 "coordinates" => object.coordinates = Some(map.next_value_seed(self.of(CoordinatesVisitor))?),
                 "geometry" => object.geometry = map.next_value_seed(self.of(OptionalObject))?.map(Box::new),
                 "features" | "geometries" => object.objects = map.next_value_seed(self.of(ObjectList))?,
+                "properties" => object.height = map.next_value_seed(self.of(Properties))?,
                 _ => {
                     map.next_value::<IgnoredAny>()?;
                 }
@@ -180,6 +206,19 @@ impl<'de> Visitor<'de> for Seed<'_, OptionalObject> {
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Option<Object>, A::Error> {
         self.of(ObjectVisitor).visit_map(map).map(Some)
+    }
+}
+
+impl<'de> DeserializeSeed<'de> for Seed<'_, Properties> {
+    type Value = Option<(usize, f64)>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+        // Properties of any form are skipped.
+        let read = serde_json::Value::deserialize(deserializer)?;
+        let serde_json::Value::Object(read) = read else { return Ok(None) };
+        let number = |value: &serde_json::Value| value.as_f64().or_else(|| value.as_str()?.trim().parse().ok());
+        let heights = read.iter().filter_map(|(name, value)| Some((height_rank(name)?, number(value)?)));
+        Ok(heights.filter(|(_, height)| height.is_finite()).min_by_key(|(rank, _)| *rank))
     }
 }
 

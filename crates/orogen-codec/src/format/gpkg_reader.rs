@@ -1,12 +1,12 @@
 //! Reads lines and areas from OGC GeoPackage (OGC 12-128r17), and their geometries in ISO well-known binary (OGC
 //! 06-103r4).
 //!
-//! Attributes, coordinate systems, points and measures are skipped. y points north in a GeoPackage, so it is negated.
-//! The third coordinate is the height.
+//! Coordinate systems and measures are skipped, and points and attributes other than heights, which only ridges have. y
+//! points north in a GeoPackage, so it is negated. The third coordinate is the height.
 
 use orogen_grid::polylines::outline::Outline;
 
-use super::outlines::{Collector, DrawingKind};
+use super::outlines::{Collector, DrawingKind, height_rank};
 use super::sqlite::Column;
 use super::sqlite_reader::Reader;
 
@@ -82,7 +82,18 @@ fn features(reader: &Reader, layer: &str, collector: &mut Collector) -> Result<(
     let Some(root) = reader.table(layer)? else {
         return Err(format!("its layer `{layer}` is no table; export it to a new file"));
     };
+    let names = if collector.kind() == DrawingKind::Ridges { reader.columns(layer)? } else { Vec::new() };
     reader.rows(root, &mut |row| {
+        let heights = names.iter().zip(row).filter_map(|(name, column)| {
+            let height = match column {
+                Column::Integer(height) => *height as f64,
+                Column::Real(height) => *height,
+                Column::Text(height) => height.trim().parse().ok()?,
+                _ => return None,
+            };
+            Some((height_rank(name)?, height))
+        });
+        collector.height = heights.min_by_key(|(rank, _)| *rank).map(|(_, height)| height);
         // A layer has one column of geometries, and no other one has the mark of a geometry.
         let mut blobs = row.iter().filter_map(|column| match column {
             Column::Blob(blob) if blob.starts_with(b"GP") => Some(*blob),
@@ -117,7 +128,7 @@ struct Binary<'a> {
 
 impl Binary<'_> {
     fn geometry(&mut self, depth: usize, collector: &mut Collector) -> Result<(), String> {
-        use DrawingKind::{Areas, Lines};
+        use DrawingKind::{Areas, Lines, Ridges};
         let is_little = match self.take()? {
             [0] => false,
             [1] => true,
@@ -132,6 +143,12 @@ impl Binary<'_> {
             has_z: dimensions % 2 == 1,
         };
         match kind {
+            1 if collector.kind() == Ridges => {
+                let point = self.point(shape)?;
+                // An empty point has no numbers.
+                let is_there = point.iter().all(|number| !number.is_nan());
+                collector.take(&[Ridges], is_there.then(|| Outline::of_points(&[point])).into_iter().collect())
+            }
             1 => self.skip(8 * shape.size),
             2 => {
                 let line = self.points(shape)?;
@@ -161,15 +178,19 @@ impl Binary<'_> {
         let count = self.count(shape.is_little)? as usize;
         let mut points = Vec::with_capacity(count.min(self.bytes.len() / 16));
         for _ in 0..count {
-            let mut point = [0.0; 4];
-            for number in &mut point[..shape.size] {
-                let bytes = self.take()?;
-                *number = if shape.is_little { f64::from_le_bytes(bytes) } else { f64::from_be_bytes(bytes) };
-            }
-            let [x, y, z, _] = point;
-            points.push([x, -y, if shape.has_z { z } else { 0.0 }]);
+            points.push(self.point(shape)?);
         }
         Ok((count > 0).then(|| Outline::of_points(&points)))
+    }
+
+    fn point(&mut self, shape: Shape) -> Result<[f64; 3], String> {
+        let mut point = [0.0; 4];
+        for number in &mut point[..shape.size] {
+            let bytes = self.take()?;
+            *number = if shape.is_little { f64::from_le_bytes(bytes) } else { f64::from_be_bytes(bytes) };
+        }
+        let [x, y, z, _] = point;
+        Ok([x, -y, if shape.has_z { z } else { 0.0 }])
     }
 
     fn count(&mut self, is_little: bool) -> Result<u32, String> {

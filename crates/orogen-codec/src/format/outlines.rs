@@ -16,6 +16,8 @@ pub enum DrawingKind {
     Lines,
     /// Boundaries of areas.
     Areas,
+    /// Lines and points with heights. An outline without pieces is a point.
+    Ridges,
 }
 
 impl DrawingKind {
@@ -26,6 +28,7 @@ impl DrawingKind {
         match self {
             DrawingKind::Lines => "line",
             DrawingKind::Areas => "area",
+            DrawingKind::Ridges => "ridge",
         }
     }
 
@@ -36,6 +39,7 @@ impl DrawingKind {
         match self {
             DrawingKind::Lines => DrawingKind::Areas,
             DrawingKind::Areas => DrawingKind::Lines,
+            DrawingKind::Ridges => DrawingKind::Areas,
         }
     }
 
@@ -46,6 +50,7 @@ impl DrawingKind {
         match self {
             DrawingKind::Lines => "path",
             DrawingKind::Areas => "polygon",
+            DrawingKind::Ridges => "continents",
         }
     }
 }
@@ -58,6 +63,9 @@ pub struct Collector {
     pub outlines: Vec<Outline>,
     /// Number of outlines of the other kind.
     pub others: usize,
+    /// The height of the feature that is being read, by its properties, in metres. Ridges have it whose points have no
+    /// heights.
+    pub height: Option<f64>,
     points: usize,
 }
 
@@ -65,7 +73,7 @@ impl Collector {
     /// A collector for outlines of one kind.
     #[must_use]
     pub fn new(kind: DrawingKind) -> Collector {
-        Collector { kind, outlines: Vec::new(), others: 0, points: 0 }
+        Collector { kind, outlines: Vec::new(), others: 0, height: None, points: 0 }
     }
 
     /// The kind of outlines that is requested.
@@ -76,7 +84,9 @@ impl Collector {
 
     /// Adds the outlines of an element that can be used as any of `kinds`.
     pub fn take(&mut self, kinds: &[DrawingKind], outlines: Vec<Outline>) -> Result<(), String> {
-        if !kinds.contains(&self.kind) {
+        let is_ridge = self.kind == DrawingKind::Ridges;
+        let kind = if is_ridge { DrawingKind::Lines } else { self.kind };
+        if !kinds.iter().any(|usable| [kind, self.kind].contains(usable)) {
             self.others += outlines.len();
             return Ok(());
         }
@@ -84,6 +94,10 @@ impl Collector {
             self.points += 1 + outline.pieces.len();
             if self.points > MAX_POINTS {
                 return Err(format!("it has more than {MAX_POINTS} points; simplify its lines, or split it"));
+            }
+            if is_ridge && !has_heights(&outline) {
+                let Some(height) = self.height else { return Err(NO_HEIGHT.into()) };
+                raise(&mut outline, height);
             }
             let is_valid = |numbers: &[f64]| numbers.iter().all(|number| number.abs() <= MAX_COORDINATE);
             let is_sound = is_valid(&outline.start)
@@ -98,11 +112,37 @@ impl Collector {
             }
             outline.closed |= self.kind == DrawingKind::Areas;
             // A single point is neither a line nor an area.
-            if !outline.pieces.is_empty() {
+            if is_ridge || !outline.pieces.is_empty() {
                 self.outlines.push(outline);
             }
         }
         Ok(())
+    }
+}
+
+/// What is wrong with a ridge whose height is not known.
+const NO_HEIGHT: &str = "a ridge or summit has no height; give its points a third coordinate (Z) in metres, or the \
+                         feature a number `height` or `elevation` (in SVG `data-height`)";
+
+/// Names of properties with the height of a feature, in the order in which they are used.
+const HEIGHTS: [&str; 3] = ["height", "elevation", "ele"];
+
+/// The place of a property among those with the height of a feature; a smaller one comes first.
+#[doc(hidden)]
+#[must_use]
+pub fn height_rank(name: &str) -> Option<usize> {
+    HEIGHTS.iter().position(|known| name.eq_ignore_ascii_case(known))
+}
+
+fn has_heights(outline: &Outline) -> bool {
+    outline.start[2] != 0.0 || outline.pieces.iter().any(|piece| piece.end()[2] != 0.0)
+}
+
+fn raise(outline: &mut Outline, height: f64) {
+    outline.start[2] = height;
+    for piece in &mut outline.pieces {
+        let (Piece::Straight(end) | Piece::Curve(_, end)) = piece;
+        end[2] = height;
     }
 }
 

@@ -22,6 +22,47 @@ const UTF_8: u32 = 1;
 /// What is wrong with a file whose parts contradict each other.
 const DAMAGED: &str = "its database is damaged";
 
+/// The names of the columns in `CREATE TABLE name (column type, ...)`.
+fn column_names(made: &str) -> Vec<String> {
+    let body = made.split_once('(').map_or("", |(_, body)| body);
+    let (mut names, mut depth, mut quote, mut part) = (Vec::new(), 0, None, String::new());
+    for letter in body.chars() {
+        match (quote, letter) {
+            (Some(end), _) => quote = Some(end).filter(|end| *end != letter),
+            (None, '"' | '`' | '\'') => quote = Some(letter),
+            (None, '[') => quote = Some(']'),
+            (None, '(') => depth += 1,
+            (None, ')') => depth -= 1,
+            _ => {}
+        }
+        if depth < 0 || (depth == 0 && letter == ',' && quote.is_none()) {
+            names.push(first_name(&part));
+            part.clear();
+        } else {
+            part.push(letter);
+        }
+        if depth < 0 {
+            break;
+        }
+    }
+    names
+}
+
+/// The first word of the definition of a column, without quotes.
+fn first_name(definition: &str) -> String {
+    let definition = definition.trim();
+    let end = |letter: char| match letter {
+        '[' => Some(']'),
+        '"' | '`' | '\'' => Some(letter),
+        _ => None,
+    };
+    let quoted = definition.chars().next().and_then(end);
+    match quoted {
+        Some(end) => definition[1..].split(end).next().unwrap_or_default().to_string(),
+        None => definition.split_whitespace().next().unwrap_or_default().to_string(),
+    }
+}
+
 /// A database file in memory.
 pub struct Reader<'a> {
     bytes: &'a [u8],
@@ -65,6 +106,23 @@ impl<'a> Reader<'a> {
                 && own.eq_ignore_ascii_case(name)
             {
                 found = u32::try_from(*root).ok().filter(|root| *root > 0);
+            }
+            Ok(())
+        })?;
+        Ok(found)
+    }
+
+    /// The names of the columns of a table, by the statement that made it; empty if it cannot be understood.
+    ///
+    /// # Errors
+    /// A message if the file is damaged.
+    pub fn columns(&self, name: &str) -> Result<Vec<String>, String> {
+        let mut found = Vec::new();
+        self.rows(1, &mut |row| {
+            if let [Column::Text("table"), Column::Text(own), _, _, Column::Text(made), ..] = row
+                && own.eq_ignore_ascii_case(name)
+            {
+                found = column_names(made);
             }
             Ok(())
         })?;

@@ -1,11 +1,13 @@
 //! The coarsest level: geography at hashed nodes, and rivers along the cheapest paths to the sea.
 
 use super::continents::Continents;
+use super::drawn_ridges::{Crest, DrawnRidges, Near};
 use super::geography::Geography;
 use super::given::Given;
 use super::hash::{self, jittered};
 use super::level::{Level, cropped};
 use super::passages::Passages;
+use super::ridges::{self, Flanks};
 use super::routes::{self, UNREACHED};
 use super::stencil::Extent;
 use super::{drainage, law};
@@ -27,6 +29,9 @@ const TYPICAL_AREA: f64 = 2e4;
 
 /// Approximate relative times for placing the nodes and for draining them in the two rounds.
 const TIMES: [f64; 3] = [3.0, 1.0, 1.0];
+
+/// Rise of a link to a ridge, in metres, where rivers first look for ways around them.
+const RIDGE_COST: f32 = 2e4;
 
 /// Minimum height of the bed of a drawn river above the sea, in metres.
 const LEAST_BED: f32 = 0.01;
@@ -62,27 +67,41 @@ struct Coarsest<'a> {
     rain: Option<Vec<f32>>,
     receiver: Vec<f32>,
     drawn: Passages,
+    /// Drawn ridges.
+    crests: Vec<Crest>,
+    near: Vec<Near>,
+    /// What ridges add to the logarithm of uplift over erodibility.
+    added: Vec<f32>,
 }
 
 impl Continents {
     /// Number of samples of the coarsest level beyond a window that [`Continents::coarsest`] computes.
     pub const COARSEST_REACH: usize = REACH;
 
+    /// The same for this land, which is more with drawn ridges.
+    #[must_use]
+    pub fn coarsest_reach(&self) -> usize {
+        REACH + if self.refinement.ridges { ridges::edge(LINKS) } else { 0 }
+    }
+
     /// The coarsest level over `window`. Needs about 60 bytes per sample of the window grown by
-    /// [`Continents::COARSEST_REACH`], which `given` must cover.
+    /// [`Continents::coarsest_reach`], which `given` must cover.
     ///
     /// # Errors
     /// If a parameter is out of range, the window does not belong to the level, or the work is cancelled.
     pub fn coarsest(&self, given: &Given, window: &Window, progress: &Progress) -> Result<Level> {
         self.check()?;
         self.refinement.check(0, window)?;
+        given.ridges.map_or(Ok(()), DrawnRidges::check)?;
         let [placing, first, second] = progress.parts(TIMES);
-        let mut coarsest = Coarsest::new(self, given, window.grown(REACH), &placing)?;
+        let mut coarsest = Coarsest::new(self, given, window.grown(self.coarsest_reach()), &placing)?;
         let costs = coarsest.first_costs();
-        let heights = coarsest.drain(&costs, &first)?;
+        let mut heights = coarsest.drain(&costs, RIDGE_COST, &first)?;
+        coarsest.open_gaps(&mut heights);
         coarsest.choose_basins(&heights);
         let costs = coarsest.second_costs();
-        let heights = coarsest.drain(&costs, &second)?;
+        let mut heights = coarsest.drain(&costs, UNREACHED, &second)?;
+        coarsest.bind_ridges(&mut heights);
         Ok(coarsest.finish(heights, window))
     }
 
@@ -117,16 +136,22 @@ impl<'a> Coarsest<'a> {
             rain: given.rain(&window),
             receiver: vec![f32::from(NONE); cells],
             drawn: given.passages(&land.refinement, 0, &window),
+            crests: given.crests(&land.refinement, 0, &window),
+            near: Vec::new(),
+            added: vec![0.0; cells],
         };
         let geography = Geography::new(land);
+        let mut crests = made.crests.iter().peekable();
         progress.expect(2.0 * window.height as f64);
         for y in window.y..window.bottom() {
             progress.step(1.0)?;
             for x in window.x..window.right() {
                 let draw = |stream| hash::unit(hash::node(land.refinement.seed, 0, x, y, stream));
-                let (east, south) = match made.drawn.at(made.shore.len()) {
-                    Some(passage) => (passage.east, passage.south),
-                    None => (jittered(draw(0)), jittered(draw(1))),
+                let crest = crests.next_if(|crest| crest.q == made.shore.len());
+                let (east, south) = match (made.drawn.at(made.shore.len()), crest) {
+                    (Some(passage), _) => (passage.east, passage.south),
+                    (None, Some(crest)) => (crest.east, crest.south),
+                    (None, None) => (jittered(draw(0)), jittered(draw(1))),
                 };
                 let (metres_east, metres_south) =
                     (land.refinement.metres(0, x, east), land.refinement.metres(0, y, south));
@@ -157,6 +182,11 @@ impl<'a> Coarsest<'a> {
         }
         made.extent.inset = 1;
         made.place_rivers();
+        made.crests.retain(|crest| made.base[crest.q] == Base::None);
+        if let Some(ridges) = given.ridges.filter(|_| !made.crests.is_empty()) {
+            let place = |q: usize| [made.east[q], made.south[q]];
+            made.near = ridges.near(&land.refinement, 0, &made.window, ridges::REACH, place);
+        }
         Ok(made)
     }
 
@@ -215,8 +245,9 @@ impl<'a> Coarsest<'a> {
         self.uplift.iter().zip(&self.area).map(cost).collect()
     }
 
-    /// Routes all land to the bases along the cheapest links, and adds up the areas. Returns the heights.
-    fn drain(&mut self, cost: &[f32], progress: &Progress) -> Result<Vec<f32>> {
+    /// Routes all land to the bases along the cheapest links, and adds up the areas. Links to the nodes of ridges rise
+    /// by `ridge_cost` in addition. Returns the heights.
+    fn drain(&mut self, cost: &[f32], ridge_cost: f32, progress: &Progress) -> Result<Vec<f32>> {
         let nodes = routes::Nodes { east: &self.east, south: &self.south, cost, detour: &self.detour };
         let links = routes::links(self.extent, &nodes);
         let mut heights = self.start.clone();
@@ -224,14 +255,22 @@ impl<'a> Coarsest<'a> {
         // Cheap paths from other bases do not lower the beds of drawn rivers.
         let pinned: Vec<usize> = (0..self.base.len()).filter(|&q| self.base[q] == Base::River).collect();
         progress.expect(2.0 * LINKS as f64);
+        let mut natural = vec![UNREACHED; self.crests.len()];
         for _ in 0..LINKS {
             progress.step(1.0)?;
             self.extent = self.extent.shrunk(1);
             routes::relax(self.extent, &links, &mut heights, &mut spare);
             pinned.iter().for_each(|&q| heights[q] = self.start[q]);
+            for (crest, natural) in self.crests.iter().zip(&mut natural) {
+                *natural = heights[crest.q].min(*natural);
+                heights[crest.q] = (*natural + ridge_cost).min(UNREACHED);
+            }
         }
         self.extent = self.extent.shrunk(1);
         routes::route(self.extent, &links, &heights, &self.start, &mut self.receiver);
+        for (crest, natural) in self.crests.iter().zip(&natural) {
+            heights[crest.q] = *natural;
+        }
         self.lead_rivers();
         for _ in 0..LINKS {
             progress.step(1.0)?;
@@ -240,6 +279,48 @@ impl<'a> Coarsest<'a> {
         }
         self.lead_rivers();
         Ok(heights)
+    }
+
+    /// Lets rivers through ridges from where there is no other way, and lowers the land behind.
+    fn open_gaps(&mut self, heights: &mut [f32]) {
+        let width = self.extent.width;
+        let is_fed = |crest: &Crest| {
+            let mut around = (0..).zip(STEPS);
+            around.any(|(code, (east, south)): (u8, _)| {
+                let donor = crest.q.checked_add_signed(south * width as isize + east);
+                let back = f32::from((code + 4) & 7);
+                donor.and_then(|donor| self.receiver.get(donor)).is_some_and(|receiver| *receiver == back)
+            })
+        };
+        let crests = std::mem::take(&mut self.crests);
+        self.crests = crests.iter().filter(|crest| !is_fed(crest)).copied().collect();
+        if !crests.is_empty() {
+            let is_behind = |height: &&mut f32| (RIDGE_COST..UNREACHED).contains(*height);
+            heights.iter_mut().filter(is_behind).for_each(|height| *height %= RIDGE_COST);
+        }
+    }
+
+    /// Gives ridges their heights, and raises the land to them.
+    fn bind_ridges(&mut self, heights: &mut Vec<f32>) {
+        if self.crests.is_empty() {
+            return;
+        }
+        let place = |q: usize| [self.east[q], self.south[q]];
+        let mut flanks = Flanks {
+            land: &self.land.refinement,
+            depth: 0,
+            width: self.extent.width,
+            receiver: &mut self.receiver,
+            near: &self.near,
+            links: LINKS,
+            place: &place,
+            is_known: &|q| self.base[q] != Base::None,
+            logarithm: &|q| self.uplift[q],
+        };
+        flanks.turn_to_lowest(heights, &self.crests);
+        let (bound, added) = flanks.bind(heights, &self.crests);
+        *heights = flanks.above_receivers(bound, &|q| self.base[q] == Base::None);
+        self.added = added;
     }
 
     /// Chooses inner basins: high and gentle land behind steep land, where rivers could not cut a path to the sea, and
@@ -270,7 +351,7 @@ impl<'a> Coarsest<'a> {
                 let mut rows = (j - 2..=j + 2).map(|row| row * width + i - 2..row * width + i + 3);
                 let alone =
                     rows.all(|row| row.into_iter().all(|o| o == q || (scores[o] > scores[q] && self.shore[o] >= 0.0)));
-                if alone {
+                if alone && self.crests.binary_search_by_key(&q, |crest| crest.q).is_err() {
                     let height = if unreached { 1500.0 * relief } else { height };
                     found.push((q, height * (0.08 + 0.3 * hash::unit(bits << 24))));
                 }
@@ -307,7 +388,7 @@ impl<'a> Coarsest<'a> {
             height: part(&heights),
             area: part(&self.area),
             receiver: part(&self.receiver).into_iter().map(|code| code as u8).collect(),
-            variation: vec![0.0; window.len()],
+            variation: part(&self.added),
             uplift: part(&self.uplift),
             shore: part(&self.shore),
         }

@@ -23,7 +23,7 @@ pub(super) struct River {
     /// Distance along the line to each point, in metres.
     pub chainage: Vec<f64>,
     /// Height of the bed at each point, in metres; it falls along the line.
-    height: Vec<f64>,
+    pub height: Vec<f64>,
     /// Tributaries: the chainage at which each joins, and the sum of their areas in km^2 up to there.
     joins: Vec<(f64, f64)>,
     pub low: [f64; 2],
@@ -136,6 +136,13 @@ impl DrawnRivers {
 }
 
 impl River {
+    /// A line with its own heights.
+    pub fn along(points: &[[f64; 3]]) -> River {
+        let mut river = River::new(points, true, f64::NEG_INFINITY);
+        river.height = points.iter().map(|point| point[2]).collect();
+        river
+    }
+
     fn new(points: &[[f64; 3]], has_heights: bool, mouth: f64) -> River {
         let mut chainage = vec![0.0];
         for ends in points.windows(2) {
@@ -186,7 +193,7 @@ impl River {
         (k, if length > 0.0 { ((chainage - self.chainage[k]) / length).clamp(0.0, 1.0) } else { 0.0 })
     }
 
-    fn place(&self, chainage: f64) -> [f64; 2] {
+    pub fn place(&self, chainage: f64) -> [f64; 2] {
         let (k, share) = self.segment(chainage);
         [0, 1].map(|axis| self.points[k][axis] + share * (self.points[k + 1][axis] - self.points[k][axis]))
     }
@@ -213,7 +220,7 @@ impl River {
 }
 
 /// A line without points that are not finite or the same as the point before.
-fn cleaned(line: &[[f64; 3]]) -> Vec<[f64; 3]> {
+pub(super) fn cleaned(line: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let mut points: Vec<[f64; 3]> = Vec::with_capacity(line.len());
     for point in line.iter().filter(|point| point.iter().all(|number| number.is_finite())) {
         if points.last().is_none_or(|last| last[..2] != point[..2]) {

@@ -1,6 +1,7 @@
 //! Properties of the land that the caller provides.
 
 use super::continents::Continents;
+use super::drawn_ridges::{Crest, DrawnRidges};
 use super::drawn_rivers::DrawnRivers;
 use super::geography::Geography;
 use super::passages::Passages;
@@ -30,6 +31,9 @@ pub struct Given<'a> {
     pub continents: Option<&'a Continents>,
     /// Rivers that every level leads along their lines.
     pub rivers: Option<&'a DrawnRivers>,
+    /// Ridges and summits that have their heights on every level.
+    #[doc(hidden)]
+    pub ridges: Option<&'a DrawnRidges>,
     /// If the shore is binding: the position of the samples in the cells, as a share of their sides. The shore is then
     /// read at the nodes.
     #[doc(hidden)]
@@ -88,6 +92,11 @@ impl Given<'_> {
     /// The cells of a window of level `depth` that drawn rivers cross.
     pub(super) fn passages(&self, land: &Refinement, depth: usize, window: &Window) -> Passages {
         self.rivers.map_or_else(Passages::default, |rivers| rivers.passages(land, depth, window))
+    }
+
+    /// The cells of a window of level `depth` with drawn ridges.
+    pub(super) fn crests(&self, land: &Refinement, depth: usize, window: &Window) -> Vec<Crest> {
+        self.ridges.map_or_else(Vec::new, |ridges| ridges.crests(land, depth, window))
     }
 
     /// The given distance to the shore in kilometres at a sample, or that of the geography at a position in metres.

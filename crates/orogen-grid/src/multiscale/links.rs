@@ -5,8 +5,9 @@ use super::children::{Children, heir};
 use super::hash;
 use super::lakes::drains;
 use super::level::Level;
-use super::passages::{Drawn, Passages};
+use super::passages::Drawn;
 use super::refinement::Refinement;
+use super::ridges::{BESIDE, RIDGE};
 use crate::error::Result;
 use crate::hydrology::direction::{NONE, STEPS};
 use crate::progress::Progress;
@@ -22,6 +23,10 @@ const DETOUR: f32 = 0.9;
 pub fn wander(land: &Refinement, depth: usize) -> f32 {
     if depth + 2 >= land.levels { FINE_WANDER } else { WANDER }
 }
+
+/// Factors of the length of paths through cells of drawn ridges, and through cells beside them.
+const ACROSS_RIDGE: f32 = 30.0;
+const BESIDE_RIDGE: f32 = 3.0;
 
 /// A child of a cell: its parent, and which of the four children it is. Bit 0 is set in the east, bit 1 in the south.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,12 +101,12 @@ impl Links {
         for q in links.kept(parent).filter(|&q| drains(parent.receiver[q])).collect::<Vec<_>>() {
             match drawn.above.at(q).filter(|passage| passage.code == parent.receiver[q]) {
                 Some(passage) => links.follow(parent, q, passage.code),
-                None => links.cross(land, parent, children, q, wander),
+                None => links.cross(land, parent, children, q, (wander, &drawn.ridges)),
             }
         }
         progress.check()?;
         if !land.is_finest(children.depth) {
-            links.go_around(land, parent, children, &drawn.below, wander);
+            links.go_around(land, parent, children, drawn, wander);
         }
         Ok(links)
     }
@@ -151,7 +156,14 @@ impl Links {
 
     /// Chooses the exit and the entry of a link. Across a side, one of four pairs is chosen by length and chance;
     /// across a corner there is only one pair.
-    fn cross(&mut self, land: &Refinement, parent: &Level, children: &Children, q: usize, wander: f32) {
+    fn cross(
+        &mut self,
+        land: &Refinement,
+        parent: &Level,
+        children: &Children,
+        q: usize,
+        (wander, ridges): (f32, &[u8]),
+    ) {
         let (east, south) = step(parent.receiver[q]);
         let target = self.target(parent, q);
         let (start, end) =
@@ -179,6 +191,12 @@ impl Links {
                 + children.distance(out, into, width)
                 + children.distance(into, end, width);
             let length = length * (1.0 + wander * hash::unit16(bits, usize::from(choice)));
+            let detour = |child: Child| match ridges.get(child.index(width)) {
+                Some(&RIDGE) => ACROSS_RIDGE,
+                Some(&BESIDE) => BESIDE_RIDGE,
+                _ => 1.0,
+            };
+            let length = length * detour(out) * detour(into);
             if length < shortest {
                 shortest = length;
                 (self.list[q].exit, self.list[q].entry) = (exit, entry);
@@ -195,7 +213,7 @@ impl Links {
 
     /// Leads some links around the corner that they cross, through a child of one of the two other cells that no link
     /// uses.
-    fn go_around(&mut self, land: &Refinement, parent: &Level, children: &Children, drawn: &Passages, wander: f32) {
+    fn go_around(&mut self, land: &Refinement, parent: &Level, children: &Children, drawn: &Drawn, wander: f32) {
         let width = self.width;
         let mut used = vec![0u8; self.list.len()];
         for q in parent.inner(1) {
@@ -218,7 +236,9 @@ impl Links {
             let mut shortest = children.distance(exit, entry, width) * (1.0 + wander * hash::unit16(bits, 0));
             for (choice, around) in [(1, Around::Side), (2, Around::End)] {
                 let Some(child) = self.passed(parent, q, around) else { continue };
-                if used[child.parent] >> child.corner & 1 == 1 || drawn.at(child.index(width)).is_some() {
+                let index = child.index(width);
+                let is_drawn = drawn.below.at(index).is_some() || drawn.ridges.get(index).is_some_and(|mark| *mark > 0);
+                if used[child.parent] >> child.corner & 1 == 1 || is_drawn {
                     continue;
                 }
                 let length = children.distance(exit, child, width) + children.distance(child, entry, width);

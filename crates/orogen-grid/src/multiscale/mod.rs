@@ -22,6 +22,8 @@ mod creep;
 mod detail;
 mod distances;
 mod drainage;
+#[doc(hidden)]
+pub mod drawn_ridges;
 pub mod drawn_rivers;
 mod drowned;
 mod floods;
@@ -43,6 +45,7 @@ mod nearest;
 mod passages;
 mod refine;
 pub mod refinement;
+mod ridges;
 mod rock;
 mod routes;
 #[doc(hidden)]

@@ -23,7 +23,7 @@ pub struct Passage {
     pub east: f32,
     pub south: f32,
     /// Distance along the line at which it enters the cell for the first time, in metres.
-    entry: f64,
+    pub entry: f64,
     /// Height of the bed, in metres: where the river enters, so that whatever joins it in the cell is above the bed. It
     /// falls from each cell to the next one.
     pub height: f32,
@@ -72,6 +72,11 @@ impl Passages {
     /// The cells in which rivers end, row by row.
     pub fn ended(&self) -> impl Iterator<Item = (usize, &Passage)> {
         (0..self.of_cell.len()).filter_map(|q| Some((q, self.at(q)?))).filter(|(_, passage)| passage.code == NONE)
+    }
+
+    /// The cells that lines cross, row by row.
+    pub fn all(&self) -> impl Iterator<Item = (usize, &Passage)> {
+        (0..self.of_cell.len()).filter_map(|q| Some((q, self.at(q)?)))
     }
 
     /// Moves the nodes of the cells that rivers cross.
@@ -211,6 +216,8 @@ impl Passages {
 pub struct Drawn {
     pub above: Passages,
     pub below: Passages,
+    /// Cells of drawn ridges and beside them (see [`super::ridges::marks`]).
+    pub ridges: Vec<u8>,
 }
 
 impl DrawnRivers {
@@ -228,7 +235,7 @@ impl DrawnRivers {
     }
 
     /// The cells of a window that rivers cross, without heights and areas.
-    fn crossed(&self, land: &Refinement, depth: usize, window: &Window) -> Passages {
+    pub(super) fn crossed(&self, land: &Refinement, depth: usize, window: &Window) -> Passages {
         let mut found = Passages::default();
         let (cell, half) = (land.cell_of(depth), 0.5 * land.cell);
         let at = |[x, y]: [f64; 2]| [(x + half) / cell, (y + half) / cell];

@@ -1,7 +1,7 @@
 //! Computation of one level from the next coarser one.
 
 use super::banks::raise_banks;
-use super::carve::{Carved, carve};
+use super::carve::{Carved, UNKNOWN, carve};
 use super::children::Children;
 use super::creep::{Hillsides, Kept, creep, steepest};
 use super::distances::Distances;
@@ -13,6 +13,7 @@ use super::level::{LAKE, Level, cropped, invalid};
 use super::links::Links;
 use super::passages::Drawn;
 use super::refinement::Refinement;
+use super::ridges::{self, Ridges};
 use super::schedule::{LevelPass, Schedule};
 use super::shores::standing_water;
 use super::stencil::Extent;
@@ -64,7 +65,7 @@ impl Refinement {
         let sample = if self.is_detail(depth) { 0.0 } else { self.half_finest(depth) };
         let binding = shore.filter(|_| self.is_shore_binding()).map(|_| sample);
         let given = &match self.is_detail(depth) {
-            true => Given { rivers: given.rivers, shore, binding, ..Given::default() },
+            true => Given { rivers: given.rivers, ridges: given.ridges, shore, binding, ..Given::default() },
             false => Given { binding, ..*given },
         };
         self.check(depth, window)?;
@@ -88,15 +89,24 @@ impl Refinement {
         let mut children = Children::new(self, &parent, given, progress)?;
         lake_shores::shape(&new_lakes, &parent, &mut children);
         progress.step(CARVING_WORK[0])?;
-        let drawn = Drawn { below: given.passages(self, depth, &children.window), above };
+        let crests = given.crests(self, depth, &children.window);
+        let ridges = ridges::marks(&crests, children.window.width, children.window.len());
+        let drawn = Drawn { below: given.passages(self, depth, &children.window), above, ridges };
         if children.is_irregular() {
+            for crest in &crests {
+                (children.east[crest.q], children.south[crest.q]) = (crest.east, crest.south);
+            }
             drawn.below.place(&mut children.east, &mut children.south);
         }
         let carved = self.carved((&parent, given), &mut children, &drawn, &schedule, progress)?;
-        let mut growing = Growing::new(self, &children, carved, given, &schedule);
-        for pass in schedule.passes {
+        let ridges = Ridges::new(self, &children, given.ridges, &crests, &carved);
+        let mut growing = Growing::new(self, &children, carved, (given, ridges), &schedule);
+        for (done, pass) in (1..).zip(schedule.passes.iter().copied()) {
             growing.run(pass);
             progress.step(work(pass))?;
+            if done == schedule.grown && schedule.ridges > 0 {
+                growing.bind_ridges(&children, schedule.ridges);
+            }
         }
         Ok(growing.finish(&children, window))
     }
@@ -136,6 +146,9 @@ struct Growing<'a> {
     /// `None` on the finest level, where nodes are on the lattice.
     distances: Option<Distances>,
     rims: Vec<f32>,
+    /// The same, with those of rivers beside drawn ridges.
+    least: Vec<f32>,
+    ridges: Option<Ridges>,
     rain: Option<Vec<f32>>,
     creep_factor: Vec<f32>,
     /// Cells of drawn rivers, and their areas by the drawing.
@@ -147,7 +160,7 @@ impl<'a> Growing<'a> {
         land: &'a Refinement,
         children: &Children,
         mut carved: Carved,
-        given: &Given,
+        (given, ridges): (&Given, Option<Ridges>),
         schedule: &Schedule,
     ) -> Growing<'a> {
         let depth = children.depth;
@@ -163,6 +176,10 @@ impl<'a> Growing<'a> {
             .map_or(Vec::new(), |rim| lake_shores::rims(land, depth, children.extent.shrunk(edge - rim), &carved));
         carved.hold_drawn(&mut rims, lake_shores::ANYTHING);
         let drawn = carved.drawn_areas();
+        let mut least = rims.clone();
+        if let Some(ridges) = &ridges {
+            ridges.hold(&carved, &mut least, lake_shores::ANYTHING);
+        }
         let creep_factor = if schedule.is_finest {
             given::factor(given.creep_factor, &children.window, 0.0..=MAX_CREEP_FACTOR)
         } else if land.is_detail(depth) {
@@ -179,6 +196,8 @@ impl<'a> Growing<'a> {
             law,
             distances,
             rims,
+            least,
+            ridges,
             rain: given.rain(&children.window),
             creep_factor,
             drawn,
@@ -198,16 +217,30 @@ impl<'a> Growing<'a> {
             }
             LevelPass::Grow => {
                 let spacing = self.distances.as_ref().map_or(Spacing::Regular, Spacing::Irregular);
-                self.growth.pass(extent, &self.law, spacing, &self.rims, self.land, self.depth);
+                self.growth.pass(extent, &self.law, spacing, &self.least, self.land, self.depth);
+                if let Some(ridges) = &mut self.ridges {
+                    ridges.hide(&mut self.growth.height);
+                }
             }
             LevelPass::Creep => {
                 let slopes = Hillsides { area, receiver, fixed, factor: &self.creep_factor };
                 creep(extent, height, spare, slopes, Kept::on(self.land, self.depth));
                 lake_shores::hold(&self.rims, spare, height);
                 self.drawn.iter().for_each(|&(q, _)| height[q] = spare[q]);
+                if let Some(ridges) = &self.ridges {
+                    ridges.keep(spare, height);
+                }
             }
             LevelPass::RaiseBanks => raise_banks(extent, height, spare, area, receiver, fixed),
-            LevelPass::Descend => steepest(extent, height, fixed, receiver),
+            LevelPass::Descend => match &mut self.ridges {
+                Some(ridges) => {
+                    ridges.hide(height);
+                    steepest(extent, height, fixed, receiver);
+                    ridges.descend(height, receiver, extent.width);
+                    ridges.show(height);
+                }
+                None => steepest(extent, height, fixed, receiver),
+            },
             LevelPass::RaiseAreas => {
                 // The sums of the passes reach a few cells upstream.
                 self.drawn.iter().for_each(|&(q, least)| area[q] = area[q].max(least));
@@ -215,6 +248,24 @@ impl<'a> Growing<'a> {
             }
             LevelPass::LimitAreas => drainage::limit(extent, receiver, area, spare),
         }
+    }
+
+    /// Gives drawn ridges their heights.
+    fn bind_ridges(&mut self, children: &Children, edge: usize) {
+        let first = self.extent;
+        self.extent = first.shrunk(edge);
+        let Some(ridges) = &mut self.ridges else { return };
+        let spacing = self.distances.as_ref().map_or(Spacing::Regular, Spacing::Irregular);
+        ridges.show(&mut self.growth.height);
+        for pass in 1..=ridges::POCKET_PASSES {
+            let (height, receiver) = (self.growth.height.clone(), self.growth.receiver.clone());
+            self.growth.pass(first.shrunk(pass), &self.law, spacing, &self.least, self.land, self.depth);
+            for (q, height) in height.into_iter().enumerate().filter(|(_, height)| *height < UNKNOWN) {
+                (self.growth.height[q], self.growth.receiver[q]) = (height, receiver[q]);
+            }
+        }
+        let Growth { height, receiver, fixed, .. } = &mut self.growth;
+        ridges.bind(self.land, children, height, receiver, fixed);
     }
 
     /// The level over `window`.
@@ -233,7 +284,13 @@ impl<'a> Growing<'a> {
             height: part(&growth.height),
             area: part(&growth.area),
             receiver,
-            variation: part(&children.variation),
+            variation: match self.ridges.as_ref().filter(|ridges| !ridges.added.is_empty()) {
+                Some(ridges) => {
+                    let sum = |(own, added): (&f32, &f32)| own + added;
+                    part(&children.variation.iter().zip(&ridges.added).map(sum).collect::<Vec<_>>())
+                }
+                None => part(&children.variation),
+            },
             uplift: part(&children.uplift),
             shore: part(&children.shore),
         }

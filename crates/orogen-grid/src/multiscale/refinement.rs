@@ -41,6 +41,8 @@ pub struct Refinement {
     pub sea: bool,
     /// Whether levels lead [drawn rivers](super::given::Given::rivers), which need more of the coarser level.
     pub drawn: bool,
+    /// Whether levels keep drawn ridges at their heights, which need more of the coarser level.
+    pub ridges: bool,
     /// Number of detail levels, from the coarsest, that read the given shore. Finer ones
     /// take it over and add irregularities.
     pub shore_details: usize,
@@ -60,6 +62,7 @@ impl Default for Refinement {
             lakes: 0.0,
             sea: false,
             drawn: false,
+            ridges: false,
             shore_details: 0,
         }
     }
@@ -67,7 +70,8 @@ impl Default for Refinement {
 
 orogen_noise::builder!(Refinement: with_seed(seed: u64), with_cell(cell: f64), with_levels(levels: usize), with_relief(relief: f64),
     with_creep(creep: f64), with_variation(variation: f64), with_jitter(jitter: f64), with_details(details: usize),
-    with_lakes(lakes: f64), with_sea(sea: bool), with_drawn(drawn: bool), with_shore_details(shore_details: usize));
+    with_lakes(lakes: f64), with_sea(sea: bool), with_drawn(drawn: bool), with_ridges(ridges: bool),
+    with_shore_details(shore_details: usize));
 
 /// Minimum rise over one cell, in metres, so that heights strictly fall. On detail levels it shrinks with the cell, so
 /// that floors stay flat, down to the precision of heights of a few kilometres.

@@ -1,7 +1,7 @@
 //! The passes that compute a level from the next coarser one, on the CPU and on GPUs.
 
 use super::refinement::Refinement;
-use super::{creep, detail, lake_shores, lakes, straighten};
+use super::{creep, detail, lake_shores, lakes, ridges, straighten};
 use crate::grid::Window;
 use std::iter::repeat_n;
 
@@ -85,6 +85,10 @@ pub struct Schedule {
     pub straightened: usize,
     /// Number of cells around a lake in which land has a minimum height; `None` without lakes.
     pub rims: Option<usize>,
+    /// Number of the first passes after which drawn ridges get their heights.
+    pub grown: usize,
+    /// Number of further cells on which heights beside drawn ridges depend; 0 without them.
+    pub ridges: usize,
     /// The passes that follow. Each makes one more cell at the edge inexact.
     pub passes: Vec<LevelPass>,
 }
@@ -108,6 +112,7 @@ impl Refinement {
         for round in 0..ROUNDS {
             passes.extend([if round == 0 { FirstAreas } else { AddAreas }, AddAreas, Grow]);
         }
+        let grown = passes.len();
         if is_finest {
             passes.extend(repeat_n(Creep, creep::creep_passes(self.creep)));
             for _ in 0..BANK_ROUNDS {
@@ -127,6 +132,8 @@ impl Refinement {
             carved: CARVED + if self.drawn { DRAWN } else { 0 } + if self.is_shore_binding() { BOUND } else { 0 },
             straightened: if is_finest { straighten::REACH } else { 0 },
             rims: (self.lakes > 0.0).then_some(lake_shores::RIM),
+            grown,
+            ridges: if self.ridges { ridges::EDGE } else { 0 },
             passes,
         }
     }
@@ -136,7 +143,7 @@ impl Refinement {
     #[must_use]
     pub fn reach(&self, depth: usize) -> usize {
         let schedule = self.schedule(depth);
-        (schedule.edge() + schedule.passes.len()).div_ceil(2)
+        (schedule.edge() + schedule.ridges + schedule.passes.len()).div_ceil(2)
     }
 
     /// Number of samples of level `depth`, at least 1, beyond a window that [`Refinement::refine`] reads of the given

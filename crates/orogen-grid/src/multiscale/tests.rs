@@ -7,6 +7,7 @@ mod floors;
 mod lakes;
 mod rain;
 mod reach;
+mod ridges;
 
 use super::continents::Continents;
 use super::drawn_rivers::DrawnRivers;

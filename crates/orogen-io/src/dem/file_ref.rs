@@ -76,6 +76,23 @@ impl From<&str> for LineFile {
     }
 }
 
+/// A file of ridges and summits named by a recipe.
+#[derive(Debug, Clone, PartialEq)]
+#[doc(hidden)]
+pub struct RidgeFile(pub Box<FileRef>);
+
+impl Default for RidgeFile {
+    fn default() -> RidgeFile {
+        RidgeFile::from("")
+    }
+}
+
+impl From<&str> for RidgeFile {
+    fn from(path: &str) -> RidgeFile {
+        RidgeFile(Box::new(FileRef { kind: FileKind::Drawing(DrawingKind::Ridges), ..FileRef::from(path) }))
+    }
+}
+
 /// A file of areas named by a recipe.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AreaFile(pub FileRef);

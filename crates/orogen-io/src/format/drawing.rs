@@ -171,6 +171,8 @@ fn elements(kind: DrawingKind, format: Format) -> &'static str {
         (DrawingKind::Lines, Format::Svg) => "`path`, `polyline` and `line`",
         (DrawingKind::Areas, Format::Svg) => "`path`, `polygon`, `rect`, `circle` and `ellipse`",
         (DrawingKind::Lines, Format::GeoJson | Format::GeoPackage) => "`LineString` and `MultiLineString`",
+        (DrawingKind::Ridges, Format::Svg) => "`path`, `polyline`, `line` and, as summits, `circle`",
+        (DrawingKind::Ridges, Format::GeoJson | Format::GeoPackage) => "`LineString`, `Point` and their `Multi` forms",
         (DrawingKind::Areas, Format::GeoJson | Format::GeoPackage) => "`Polygon` and `MultiPolygon`",
     }
 }

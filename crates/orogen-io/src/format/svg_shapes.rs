@@ -69,8 +69,12 @@ fn is_hidden(node: &Node) -> bool {
         || style.split(';').any(is_none)
 }
 
+/// The attribute with the height of a ridge or summit in metres, also of a group of them.
+const HEIGHT: &str = "data-height";
+
 fn shape(node: &Node, affine: &Affine, collector: &mut Collector) -> Result<(), String> {
-    use DrawingKind::{Areas, Lines};
+    use DrawingKind::{Areas, Lines, Ridges};
+    collector.height = node.ancestors().find_map(|node| node.attribute(HEIGHT)?.trim().parse().ok());
     let name = node.tag_name().name();
     let (kinds, outlines): (&[DrawingKind], Vec<Outline>) = match name {
         "path" => {
@@ -90,6 +94,10 @@ fn shape(node: &Node, affine: &Affine, collector: &mut Collector) -> Result<(), 
             (&[Lines], vec![Outline::of_points(&[[x1, y1, 0.0], [x2, y2, 0.0]])])
         }
         "rect" => (&[Areas], rectangle(node)?),
+        "circle" if collector.kind() == Ridges => {
+            let [cx, cy] = lengths(node, ["cx", "cy"])?;
+            (&[Ridges], vec![Outline::of_points(&[[cx, cy, 0.0]])])
+        }
         "circle" => {
             let [cx, cy, r] = lengths(node, ["cx", "cy", "r"])?;
             (&[Areas], ellipse([cx, cy], [r, r]))

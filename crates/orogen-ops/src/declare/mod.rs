@@ -50,6 +50,8 @@ pub use input::{Input, InputName};
 #[doc(hidden)]
 pub use input::{named, set_named};
 pub use orogen_grid::strata::Stratum;
+#[doc(hidden)]
+pub use orogen_io::dem::file_ref::RidgeFile;
 pub use orogen_io::dem::file_ref::{AreaFile, FileRef, LineFile, NetworkFile};
 #[doc(hidden)]
 pub use param::AnyParam;

@@ -4,7 +4,7 @@ use super::spec::{ParamSpec, Shape};
 use crate::expression::text::Expression;
 use crate::value::{Spanned, Value};
 use orogen_grid::hex;
-use orogen_io::dem::file_ref::{AreaFile, FileRef, LineFile, NetworkFile, Picture};
+use orogen_io::dem::file_ref::{AreaFile, FileRef, LineFile, NetworkFile, Picture, RidgeFile};
 
 /// A type that parameters can have.
 pub trait Param: Sized {
@@ -120,7 +120,7 @@ macro_rules! file_param {
     )* };
 }
 
-file_param!(Picture, LineFile, AreaFile, NetworkFile);
+file_param!(Picture, LineFile, AreaFile, NetworkFile, RidgeFile);
 
 impl Param for f64 {
     const SHAPE: Shape = Shape::Number;

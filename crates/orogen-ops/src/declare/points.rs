@@ -8,6 +8,7 @@ use super::point_lists::{Drawn, Form, Lists, MAX_POINTS, Reader};
 use super::spec::Shape;
 use crate::value::{Spanned, Value};
 use orogen_grid::meanders::{Floodplain, Meanders};
+use orogen_grid::multiscale::drawn_ridges::DrawnRidges;
 use orogen_grid::multiscale::drawn_rivers::DrawnRivers;
 use orogen_grid::polylines::outline::Outline;
 use orogen_grid::polylines::segments::Segments;
@@ -26,8 +27,15 @@ pub type AreaPoints = PointLists<3>;
 pub struct PointLists<const MIN: usize> {
     lists: Arc<Lists>,
     form: Form,
+    made: Box<Memos>,
+}
+
+/// What is made of the lists, in a box: a node has few lists, but every node has their size.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Memos {
     segments: Memo<Made>,
     rivers: Memo<MadeRivers>,
+    ridges: Memo<MadeRidges>,
     floodplain: Memo<MadeFloodplain>,
 }
 
@@ -61,6 +69,13 @@ struct MadeRivers {
     rivers: Arc<DrawnRivers>,
 }
 
+/// Drawn ridges, with the file and the option from which they were made.
+struct MadeRidges {
+    file: Option<Arc<Drawing>>,
+    smooth: bool,
+    ridges: Arc<DrawnRidges>,
+}
+
 /// A floodplain, with the rivers, the file and the options from which it was made.
 struct MadeFloodplain {
     river: Meanders,
@@ -90,13 +105,7 @@ fn is_same(one: Option<&Arc<Drawing>>, other: Option<&Arc<Drawing>>) -> bool {
 impl<const MIN: usize> From<Vec<Vec<[f64; 3]>>> for PointLists<MIN> {
     fn from(lists: Lists) -> PointLists<MIN> {
         let form = Form { is_nested: lists.len() != 1, has_heights: true };
-        PointLists {
-            lists: Arc::new(lists),
-            form,
-            segments: Memo::default(),
-            rivers: Memo::default(),
-            floodplain: Memo::default(),
-        }
+        PointLists { lists: Arc::new(lists), form, made: Box::default() }
     }
 }
 
@@ -143,7 +152,7 @@ impl<const MIN: usize> PointLists<MIN> {
             let segments = Segments::new(&self.outlines(drawing, options), options.tolerance);
             Made { options, file: drawing.cloned(), segments }
         };
-        read(&self.segments.get_or_make(is_current, make).segments)
+        read(&self.made.segments.get_or_make(is_current, make).segments)
     }
 
     /// The outlines of the points and of the file.
@@ -160,6 +169,7 @@ impl<const MIN: usize> PointLists<MIN> {
 
     /// The floodplain of rivers that start along the points and along the file's lines. It is made once, and again only
     /// for other options.
+    #[must_use]
     pub fn floodplain(&self, file: &FileRef, options: OutlineOptions, river: Meanders) -> Arc<Floodplain> {
         let drawing = file.drawing();
         let is_current = |made: &MadeFloodplain| {
@@ -171,26 +181,45 @@ impl<const MIN: usize> PointLists<MIN> {
                 outlines.iter().map(|outline| points_of(outline, options.tolerance)).collect();
             MadeFloodplain { river, options, file: drawing.cloned(), floodplain: Arc::new(river.floodplain(&lines)) }
         };
-        Arc::clone(&self.floodplain.get_or_make(is_current, make).floodplain)
+        Arc::clone(&self.made.floodplain.get_or_make(is_current, make).floodplain)
     }
 
     /// The rivers along the points and along the file's lines, which are smooth curves if `smooth` is set. A line that
     /// ends within `near` metres of another is its tributary. They are made once, and again only for other options.
+    #[must_use]
     pub fn drawn_rivers(&self, file: &FileRef, smooth: bool, near: f64) -> Arc<DrawnRivers> {
         let drawing = file.drawing();
         let is_current =
             |made: &MadeRivers| is_same(made.file.as_ref(), drawing) && made.smooth == smooth && made.near == near;
         let make = || {
-            let own = self.lists.iter().map(|points| Outline::of_points(points));
-            let read = drawing.iter().flat_map(|drawing| drawing.outlines.iter().cloned());
-            let lines = own.chain(read).map(|outline| {
-                let outline = if smooth { outline.smoothed() } else { outline };
-                points_of(&outline, RIVER_TOLERANCE)
-            });
-            let lines: Vec<Vec<[f64; 3]>> = lines.collect();
+            let lines = self.lines(drawing, smooth);
             MadeRivers { file: drawing.cloned(), smooth, near, rivers: Arc::new(DrawnRivers::new(&lines, near)) }
         };
-        Arc::clone(&self.rivers.get_or_make(is_current, make).rivers)
+        Arc::clone(&self.made.rivers.get_or_make(is_current, make).rivers)
+    }
+
+    /// The ridges along the points and of the file, which are smooth curves if `smooth` is set. They are made once, and
+    /// again only for other options.
+    #[must_use]
+    pub fn drawn_ridges(&self, file: &FileRef, smooth: bool) -> Arc<DrawnRidges> {
+        let drawing = file.drawing();
+        let is_current = |made: &MadeRidges| is_same(made.file.as_ref(), drawing) && made.smooth == smooth;
+        let make = || {
+            let ridges = Arc::new(DrawnRidges::new(&self.lines(drawing, smooth)));
+            MadeRidges { file: drawing.cloned(), smooth, ridges }
+        };
+        Arc::clone(&self.made.ridges.get_or_make(is_current, make).ridges)
+    }
+
+    /// The points of straight segments along the points and along the outlines of a file.
+    fn lines(&self, drawing: Option<&Arc<Drawing>>, smooth: bool) -> Vec<Vec<[f64; 3]>> {
+        let own = self.lists.iter().map(|points| Outline::of_points(points));
+        let read = drawing.into_iter().flat_map(|drawing| drawing.outlines.iter().cloned());
+        let lines = own.chain(read).map(|outline| {
+            let outline = if smooth && !outline.pieces.is_empty() { outline.smoothed() } else { outline };
+            points_of(&outline, RIVER_TOLERANCE)
+        });
+        lines.collect()
     }
 }
 
@@ -201,13 +230,7 @@ impl<const MIN: usize> Param for PointLists<MIN> {
         let anywhere = [f64::NEG_INFINITY, f64::INFINITY];
         let reader = Reader { name: "", number: String::new(), drawn: Drawn::of_at_least(MIN), range: anywhere };
         let (lists, form) = reader.read(value).ok()?;
-        Some(PointLists {
-            lists: Arc::new(lists),
-            form,
-            segments: Memo::default(),
-            rivers: Memo::default(),
-            floodplain: Memo::default(),
-        })
+        Some(PointLists { lists: Arc::new(lists), form, made: Box::default() })
     }
 
     fn write(&self) -> Value {

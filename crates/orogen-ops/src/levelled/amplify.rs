@@ -2,6 +2,7 @@
 
 use super::drained::Drained;
 use super::drained_op::drained_op;
+use orogen_grid::multiscale::drawn_ridges::DrawnRidges;
 use orogen_grid::multiscale::drawn_rivers::DrawnRivers;
 use std::sync::Arc;
 
@@ -82,6 +83,11 @@ impl Amplify {
     /// The land with what only this op has.
     fn completed(&self, land: Drained) -> Drained {
         Drained { refinement: land.refinement.with_jitter(self.jitter).with_sea(self.sea), ..land }
+    }
+
+    /// The ridges are those of the source.
+    fn drawn_ridges(&self) -> Option<Arc<DrawnRidges>> {
+        None
     }
 
     /// The rivers are those of the source.

@@ -2,8 +2,9 @@
 
 use super::drained::Drained;
 use super::drained_op::drained_op;
-use crate::declare::{LineFile, LinePoints};
+use crate::declare::{LineFile, LinePoints, RidgeFile};
 use orogen_grid::multiscale::continents::Continents as Land;
+use orogen_grid::multiscale::drawn_ridges::DrawnRidges;
 use orogen_grid::multiscale::drawn_rivers::DrawnRivers;
 use std::sync::Arc;
 
@@ -86,8 +87,17 @@ drained_op! {
         rivers: LinePoints = LinePoints::default(), unit "m", range -1e9 to 1e9;
         /// Path of an SVG, GeoJSON or GeoPackage file with further rivers, as `file` of `path`, in metres of the world.
         rivers_file: LineFile = LineFile::default();
-        /// Whether drawn rivers are smooth curves through their points. Lines of a file that have curves stay as they
-        /// are.
+        /// Ridges drawn on the map, each a line of points with a third number, the height of the crest. Every level has
+        /// nodes on them with these heights, within 1 %: no river crosses a ridge, and the land beside it rises to it.
+        /// Ridges lie on land, above the rivers beside them, and a few coarsest cells apart. A very short line is a
+        /// summit.
+        ridges: LinePoints = LinePoints::default(), unit "m", range -1e9 to 1e9;
+        /// Path of an SVG, GeoJSON or GeoPackage file with further ridges and with summits, which are points, in metres
+        /// of the world. Their heights are the third coordinates or, without them, the number `height` or `elevation`
+        /// of the feature, in metres (in SVG `data-height`; circles are summits).
+        ridges_file: RidgeFile = RidgeFile::default();
+        /// Whether drawn rivers and ridges are smooth curves through their points. Lines of a file that have curves
+        /// stay as they are.
         smooth: bool = false;
     }
     layers {
@@ -114,8 +124,18 @@ impl Continents {
         let refinement = land
             .refinement
             .with_drawn(!(self.rivers.is_empty() && self.rivers_file.0.is_empty()))
+            .with_ridges(self.has_ridges())
             .with_shore_details(self.shore_details as usize);
         Drained { continents: Some(continents), refinement, ..land }
+    }
+
+    fn has_ridges(&self) -> bool {
+        !(self.ridges.is_empty() && self.ridges_file.0.is_empty())
+    }
+
+    /// The drawn ridges and summits.
+    fn drawn_ridges(&self) -> Option<Arc<DrawnRidges>> {
+        self.has_ridges().then(|| self.ridges.drawn_ridges(&self.ridges_file.0, self.smooth))
     }
 
     /// The drawn rivers.

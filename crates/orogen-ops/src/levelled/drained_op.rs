@@ -10,7 +10,7 @@ use crate::op::{Context, GridInputs, Levelled, Levels, WorldParams, halved};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::multiscale::coarse::{Coarse, REACH};
-use orogen_grid::multiscale::continents::Continents;
+use orogen_grid::multiscale::drawn_ridges::DrawnRidges;
 use orogen_grid::multiscale::drawn_rivers::DrawnRivers;
 use orogen_grid::multiscale::given::Given;
 use orogen_grid::multiscale::level::Level;
@@ -25,7 +25,8 @@ const COST_OF_CONTINENTS: f64 = 2e4;
 const COST: f64 = 300.0;
 
 /// `op!` for drained land: the common layers of such ops come before the declared ones. The op's method `completed`
-/// sets parameters of the land that not all of these ops have, and its method `drawn_rivers` returns drawn rivers.
+/// sets parameters of the land that not all of these ops have, and its methods `drawn_rivers` and
+/// `drawn_ridges` return what is drawn.
 macro_rules! drained_op {
     (
         $(#[doc = $doc:literal])+
@@ -89,6 +90,10 @@ macro_rules! drained_op {
             fn rivers(&self) -> Option<std::sync::Arc<orogen_grid::multiscale::drawn_rivers::DrawnRivers>> {
                 self.drawn_rivers()
             }
+
+            fn ridges(&self) -> Option<std::sync::Arc<orogen_grid::multiscale::drawn_ridges::DrawnRidges>> {
+                self.drawn_ridges()
+            }
         }
     };
 }
@@ -101,6 +106,9 @@ pub trait DrainedOp: Declared + Send + Sync {
 
     /// The rivers that every level leads along their lines.
     fn rivers(&self) -> Option<Arc<DrawnRivers>>;
+
+    /// The ridges and summits that have their heights on every level.
+    fn ridges(&self) -> Option<Arc<DrawnRidges>>;
 }
 
 /// The inputs of all such ops; inputs that an op does not declare are `None`.
@@ -114,6 +122,7 @@ fn given<'a>(inputs: &GridInputs<'a>) -> Given<'a> {
         rain: inputs.get("rain"),
         continents: None,
         rivers: None,
+        ridges: None,
         binding: None,
     }
 }
@@ -136,7 +145,7 @@ impl<T: DrainedOp> Levelled for T {
     fn source_halo(&self, level: usize) -> usize {
         let Drained { refinement, continents, .. } = self.drained();
         match (level, continents) {
-            (0, Some(_)) => Continents::COARSEST_REACH,
+            (0, Some(continents)) => continents.with_refinement(refinement).coarsest_reach(),
             (0, None) => REACH,
             _ => refinement.given_reach(level),
         }
@@ -155,8 +164,8 @@ impl<T: DrainedOp> Levelled for T {
 
     fn coarsest(&self, inputs: &GridInputs, window: &Window, context: &Context) -> Result<Vec<Grid>> {
         let Drained { refinement, continents, .. } = self.drained().seeded(context.world_params);
-        let rivers = self.rivers();
-        let given = Given { rivers: rivers.as_deref(), ..given(inputs) };
+        let (rivers, ridges) = (self.rivers(), self.ridges());
+        let given = Given { rivers: rivers.as_deref(), ridges: ridges.as_deref(), ..given(inputs) };
         if let Some(continents) = continents {
             return Ok(continents.coarsest(&given, window, context.progress)?.into_planes());
         }
@@ -184,9 +193,13 @@ impl<T: DrainedOp> Levelled for T {
         let moved = |input: &Grid| Grid::from_data(land.nodes_at(level, input.window()), input.data().to_vec());
         let moved: Vec<Option<Grid>> = inputs.all().iter().map(|input| moved((*input)?)).collect();
         let moved: Vec<Option<&Grid>> = moved.iter().map(Option::as_ref).collect();
-        let rivers = self.rivers();
-        let given =
-            Given { continents: land.continents.as_ref(), rivers: rivers.as_deref(), ..given(&inputs.with(&moved)) };
+        let (rivers, ridges) = (self.rivers(), self.ridges());
+        let given = Given {
+            continents: land.continents.as_ref(),
+            rivers: rivers.as_deref(),
+            ridges: ridges.as_deref(),
+            ..given(&inputs.with(&moved))
+        };
         let mut made = land.refinement.refine(&above, &given, &nodes, context.progress)?;
         made.window = *window;
         Ok(made.into_planes())
@@ -211,13 +224,16 @@ impl<T: DrainedOp> Levelled for T {
         context: &Context,
     ) -> Result<()> {
         let level = level_of(level, planes)?;
-        layers_of(&self.drained(), level, self.spec(), window, out, context)
+        layers_of(&self.drained(), self.ridges().as_deref(), level, self.spec(), window, out, context)
     }
 
     fn lower(&self, level: usize, given: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
         let land = self.drained().seeded(world_params);
         if land.refinement.drawn {
             return Lowering::Processor("drawn rivers are led along their lines in f64");
+        }
+        if land.refinement.ridges {
+            return Lowering::Processor("land is raised to drawn ridges in f64");
         }
         if land.refinement.has_geography(level) && land.continents.is_some() {
             return Lowering::Processor("continents and ranges are placed in f64");
@@ -226,6 +242,9 @@ impl<T: DrainedOp> Levelled for T {
     }
 
     fn lower_layers(&self, level: usize, wanted: &[bool], world_params: &WorldParams) -> Lowering<Passes> {
+        if self.drained().refinement.ridges {
+            return Lowering::Processor("land is raised to drawn ridges in f64");
+        }
         lower_layers(&self.drained(), level, self.spec(), wanted, world_params)
     }
 
@@ -247,7 +266,10 @@ impl<T: DrainedOp> Levelled for T {
         // Inputs are copied to the windows of the nodes.
         let bytes = Refinement::bytes_per_sample().saturating_add(4 * self.spec().inputs.len() as u64);
         let rivers = self.rivers().map_or(0, |rivers| rivers.memory());
-        bytes.saturating_mul(samples.width as u64).saturating_mul(samples.height as u64).saturating_add(rivers)
+        let drawn = self.ridges().map_or(rivers, |ridges| rivers + ridges.memory());
+        // Distances and heights of ridges, and copies of heights.
+        let bytes = bytes + if self.drained().refinement.ridges { 40 } else { 0 };
+        bytes.saturating_mul(samples.width as u64).saturating_mul(samples.height as u64).saturating_add(drawn)
     }
 }
 

@@ -6,6 +6,7 @@ use crate::op::Context;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::hydrology::rivers::Channel;
+use orogen_grid::multiscale::drawn_ridges::DrawnRidges;
 use orogen_grid::multiscale::level::{Level, direction};
 use orogen_grid::multiscale::refinement::Refinement;
 
@@ -15,6 +16,7 @@ use orogen_grid::multiscale::refinement::Refinement;
 /// If the level covers too little, or the work was cancelled.
 pub fn layers_of(
     land: &Drained,
+    ridges: Option<&DrawnRidges>,
     mut level: Level,
     spec: &Spec,
     window: &Window,
@@ -34,6 +36,9 @@ pub fn layers_of(
     }
     let channel = land.channel();
     let mut made = refinement.surface_at(share, &level, window, progress)?;
+    if let Some(ridges) = ridges {
+        ridges.raise(refinement, &level, share, window, &mut made);
+    }
     refinement.cut_rivers(&level, &mut made, *stream, &channel, progress)?;
     let [height, flow, water, lake] =
         [&made.height, &made.flow, &made.water_level, &made.lake_depth].map(|grid| grid.data());

@@ -199,6 +199,72 @@ fn geometries_of_geojson() {
     assert!(refusal(line, Format::GeoJson, Areas).ends_with("the op `path` reads its 1 line"));
 }
 
+/// The points of ridges of a drawing.
+fn ridges(content: &[u8], format: Format) -> std::result::Result<Vec<Vec<[f64; 3]>>, String> {
+    let drawing = Drawing::parse(content, format, None, DrawingKind::Ridges)?;
+    let points = |outline: &Outline| [outline.start].into_iter().chain(outline.pieces.iter().map(Piece::end)).collect();
+    Ok(drawing.outlines.iter().map(points).collect())
+}
+
+#[test]
+fn ridges_and_summits_have_heights() {
+    let bytes = fs::read(Path::new(CORPUS).join("ridges.geojson").as_path()).unwrap();
+    let expect = [
+        vec![[0.0, 500.0, 812.5], [1050.0, 700.0, 812.5], [1900.0, 300.0, 812.5]],
+        vec![[0.0, 5.0, 400.0], [900.0, 90.0, 700.0]],
+        vec![[300.0, 1200.0, 950.0]],
+        vec![[1.0, 2.0, 640.0]],
+        vec![[60.0, 70.0, 5.0]],
+    ];
+    assert_eq!(ridges(&bytes, Format::GeoJson).unwrap(), expect);
+    let drawn = svg(
+        "<g data-height='700'><line x2='9'/><circle cx='3' cy='4' r='1' data-height='810.5'/></g><polygon points='0 0 1 1 2 0'/>",
+    );
+    let expect = [vec![[0.0, 0.0, 700.0], [9.0, 0.0, 700.0]], vec![[3.0, 4.0, 810.5]]];
+    assert_eq!(ridges(drawn.as_bytes(), Format::Svg).unwrap(), expect);
+    for (content, format) in [
+        (svg("<line x2='9'/>"), Format::Svg),
+        (r#"{ "type": "Point", "coordinates": [1, 2] }"#.to_string(), Format::GeoJson),
+        (
+            r#"{ "type": "Feature", "properties": { "height": "high" }, "geometry": { "type": "LineString", "coordinates": [[1, 2], [3, 4]] } }"#
+                .to_string(),
+            Format::GeoJson,
+        ),
+    ] {
+        let why = ridges(content.as_bytes(), format).unwrap_err();
+        assert!(why.contains("a ridge or summit has no height; give its points a third coordinate (Z)"), "{why}");
+    }
+    let area = r#"{ "type": "Polygon", "coordinates": [[[0, 0], [9, 0], [9, 9], [0, 0]]] }"#;
+    let why = ridges(area.as_bytes(), Format::GeoJson).unwrap_err();
+    assert!(why.starts_with("it has no ridges, of which `LineString`, `Point`"), "{why}");
+}
+
+#[test]
+fn ridges_of_a_geopackage() {
+    use crate::format::features::{Crs, Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value};
+    const FIELDS: &[Field] = &[
+        Field { name: "name", kind: FieldType::Text, about: "name" },
+        Field { name: "Elevation", kind: FieldType::Real, about: "height in m" },
+    ];
+    let layer = |name, geometry, features: Vec<(Geometry, f64)>| {
+        let feature = |(geometry, height)| Feature { geometry, values: vec![Value::text("a"), Value::Real(height)] };
+        let features = features.into_iter().map(feature).collect();
+        FeatureLayer { name, about: "a test", geometry, fields: FIELDS, features }
+    };
+    let line = vec![[0.0, 0.0, 0.0], [90.0, 10.0, 0.0]];
+    let layers = [
+        layer("ridges", GeometryType::Line, vec![(Geometry::Line(line), 640.0)]),
+        layer("summits", GeometryType::Point, vec![(Geometry::Point([5.0, 6.0, 0.0]), 700.5)]),
+    ];
+    let mut file = Vec::new();
+    crate::format::gpkg::write(&mut file, layers.iter(), Crs::Local).unwrap();
+    let read = |layer: &str| {
+        let drawing = Drawing::parse(&file, Format::GeoPackage, Some(layer), DrawingKind::Ridges).unwrap();
+        drawing.outlines.iter().map(|outline| (outline.pieces.len(), outline.start[2])).collect::<Vec<_>>()
+    };
+    assert_eq!((read("ridges"), read("summits")), (vec![(1, 640.0)], vec![(0, 700.5)]));
+}
+
 #[test]
 fn malformed_files_are_refused_with_what_is_wrong() {
     use DrawingKind::{Areas, Lines};

@@ -111,11 +111,13 @@ fn with_node(recipe: &Recipe, op: &Node, random: &mut Random) -> Recipe {
         Some(FileKind::Drawing(DrawingKind::Lines)) => DRAWINGS[0],
         Some(FileKind::Drawing(DrawingKind::Areas)) => DRAWINGS[1],
         Some(FileKind::Network) => NETWORK,
+        Some(FileKind::Drawing(DrawingKind::Ridges)) => DRAWINGS[2],
         _ => DEM,
     };
     for (i, spec) in op.spec().params.iter().enumerate() {
         // Some parameters keep their defaults, as in most recipes.
         if random.below(3) > 0 {
+            let file = if spec.name == "ridges_file" { DRAWINGS[2] } else { file };
             let drawn = value(spec, cell, file, random);
             node.set_param(i, &drawn)
                 .unwrap_or_else(|why| panic!("`{}` of `{}` = {}: {why}", spec.name, op.spec().op, drawn.to_toml()));

@@ -42,10 +42,15 @@ pub fn value(spec: &ParamSpec, cell: f64, file: &str, random: &mut Random) -> Va
             list(xs.into_iter().map(|x| list([x, number(random)].map(Value::Number))))
         }
         Shape::Points(min) => {
-            let numbers = 2 + random.below(2);
+            // Ridges have heights.
+            let numbers = if spec.name == "ridges" { 3 } else { 2 + random.below(2) };
+            let point = |random: &mut Random| {
+                let of = |k: u64, drawn: f64| if k == 2 && spec.name == "ridges" { drawn.abs() + 1.0 } else { drawn };
+                list((0..numbers).map(|k| Value::Number(of(k, number(random)).min(UNBOUNDED))))
+            };
             let line = |random: &mut Random| {
                 let points = min as u64 + random.below(6);
-                list((0..points).map(|_| list((0..numbers).map(|_| Value::Number(number(random))))))
+                list((0..points).map(|_| point(random)))
             };
             if random.below(2) == 0 { line(random) } else { list((0..1 + random.below(3)).map(|_| line(random))) }
         }

@@ -51,10 +51,11 @@ pub const PICTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpu
 /// A network for the `learned` node.
 pub const NETWORK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../orogen-grid/src/learned/land.network");
 
-/// Lines and areas for nodes that draw.
-pub const DRAWINGS: [&str; 2] = [
+/// Lines, areas and ridges for nodes that draw.
+pub const DRAWINGS: [&str; 3] = [
     concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/drawing/lines.geojson"),
     concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/drawing/areas.geojson"),
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/drawing/ridges.geojson"),
 ];
 
 /// Two lines or rings for the nodes that draw, in a small world: the second one crosses the first.
