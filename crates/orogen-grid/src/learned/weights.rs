@@ -11,8 +11,8 @@
 //! sha256 (of the weights, in hexadecimal)
 //! ```
 //!
-//! `cells` are the smallest and the largest fine cell of the land in training, in metres. `land` and unknown lines may be
-//! repeated.
+//! `cells` are the smallest and the largest fine cell of the land in training, in metres. `land` and unknown lines may
+//! be repeated.
 
 use super::convolution::{Convolution, TAPS};
 use crate::error::{Error, ErrorKind, Result};

@@ -17,14 +17,14 @@ op! {
     /// above it.
     ///
     /// The network sees the slopes, bends and roughness of the coarse heights 9 samples around, in units of the slope
-    /// there, and noise. It adds to their cubic interpolation what real land of that form has at half the cell: gullies,
-    /// spurs and rough slopes, steeper where the land is steep. Detail is a draw, which depends on the seed, or with
-    /// `noise = 0` the most likely land, which is smoother and closest to the truth. It knows no rivers: small
+    /// there, and noise. It adds to their cubic interpolation what real land of that form has at half the cell:
+    /// gullies, spurs and rough slopes, steeper where the land is steep. Detail is a draw, which depends on the seed,
+    /// or with `noise = 0` the most likely land, which is smoother and closest to the truth. It knows no rivers: small
     /// depressions are as frequent as in other files of heights; put a `breach` after it where water has to flow.
     ///
-    /// The network that is part of Orogen has 123 kB and learned at cells of 60 to 180 m from ten places on Earth, whose
-    /// heights are in the public domain (SRTM): see docs/learned.md. Smaller and larger cells get the detail of the
-    /// nearest of these. Where nine neighboring samples have the same height there is water, which stays level.
+    /// The network that is part of Orogen has 123 kB and learned at cells of 60 to 180 m from ten places on Earth,
+    /// whose heights are in the public domain (SRTM): see docs/learned.md. Smaller and larger cells get the detail of
+    /// the nearest of these. Where nine neighboring samples have the same height there is water, which stays level.
     ///
     /// Related: a conditional energy score as the loss (Gneiting and Raftery 2007), super-resolution with sub-pixel
     /// convolution (Shi and others 2016).
