@@ -13,6 +13,10 @@ use crate::grid::Window;
 /// Minimum and maximum height of a ridge above the sea, in metres.
 const HEIGHTS: [f64; 2] = [1.0, 1e5];
 
+/// Cells of ridges, and cells beside them, in planes of marks.
+pub(super) const RIDGE: u8 = 2;
+pub(super) const BESIDE: u8 = 1;
+
 /// The ridges and summits of a drawing.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DrawnRidges {

@@ -2,12 +2,12 @@
 //! pass.
 
 use super::children::{Children, heir};
+use super::drawn_ridges::{BESIDE, RIDGE};
 use super::hash;
 use super::lakes::drains;
 use super::level::Level;
 use super::passages::Drawn;
 use super::refinement::Refinement;
-use super::ridges::{BESIDE, RIDGE};
 use crate::error::Result;
 use crate::hydrology::direction::{NONE, STEPS};
 use crate::progress::Progress;

@@ -10,7 +10,7 @@
 use super::carve::{Carved, UNKNOWN};
 use super::children::Children;
 use super::drainage::{FREE, WATER};
-use super::drawn_ridges::{Crest, DrawnRidges, Near};
+use super::drawn_ridges::{BESIDE, Crest, DrawnRidges, Near, RIDGE};
 use super::law::slope_of_one_cell;
 use super::level::Level;
 use super::refinement::Refinement;
@@ -57,10 +57,6 @@ const LATER: f32 = 0.6;
 /// whose nodes are on the lattice.
 const CREST_SLOPE: f32 = 0.5;
 const CREST_DROP: f32 = 0.008;
-
-/// Cells of ridges, and cells beside them, in planes of [`marks`].
-pub const RIDGE: u8 = 2;
-pub const BESIDE: u8 = 1;
 
 /// Marks the cells of ridges and the eight cells around each; empty if there are none.
 pub fn marks(crests: &[Crest], width: usize, cells: usize) -> Vec<u8> {
