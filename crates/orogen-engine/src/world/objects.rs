@@ -73,7 +73,8 @@ impl World {
         let ground = samples(&bounds, window.cell);
         let heights = self.grids_beside(&[HEIGHT], &ground, 0, &progress.part(1.0))?;
         let Some(heights) = heights.first() else { return Ok(Vec::new()) };
-        let mut objects = Vec::new();
+        // Without spare capacity, which would not be in the memory of the points.
+        let mut objects = Vec::with_capacity(placed.iter().map(|placed| placed.points.len()).sum());
         for (entry, (placed, (scatter, _))) in placed.iter().zip(&entries).enumerate() {
             for (position, bits) in placed.points.iter().copied() {
                 let height = height(heights, position);

@@ -43,6 +43,8 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
     let mesh = Prepared::new(source, options, options.whole(LODS.name).unwrap_or(1) as usize)?;
     let color = color(options, "texture", files, false);
     let levels: Vec<Surface> = (0..mesh.shapes.len()).map(|level| mesh.surface(level, color == "vertex")).collect();
+    // Before the pictures, so that too many objects are refused in less memory.
+    let objects = mesh_objects::of(source, &mesh, options)?;
     let mut texture = Vec::new();
     let mut material = Vec::new();
     let mut normal_maps = Vec::new();
@@ -69,7 +71,6 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
     .collect();
     let [texture, material] = [&texture, &material].map(|picture| (!picture.is_empty()).then_some(picture.as_slice()));
     let water = mesh_water::of(source, &mesh, options, reserved(source.window(), options))?;
-    let objects = mesh_objects::of(source, &mesh, options)?;
     files.write(|out| {
         write_model(
             out,
