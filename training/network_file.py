@@ -28,6 +28,7 @@ def write_network(path, network, cells, lands):
         f"channels {CHANNELS}",
         f"layers {LAYERS}",
         "cells {:g} {:g}".format(*cells),
+        *(["rivers yes"] if network.rivers else []),
         f"licence {LICENCE}",
         *(f"land {land}" for land in lands),
         f"sha256 {hashlib.sha256(weights).hexdigest()}",
@@ -40,7 +41,7 @@ def read_network(path):
     header, _, weights = path.read_bytes().partition(b"\n\n")
     fields = dict(line.split(" ", 1) for line in header.decode().splitlines())
     numbers = torch.from_numpy(np.frombuffer(weights, "<f4").copy())
-    network = Network(int(fields["channels"]), int(fields["layers"]))
+    network = Network(int(fields["channels"]), int(fields["layers"]), "rivers" in fields)
     at = 0
 
     def take(*shape):

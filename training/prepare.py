@@ -1,7 +1,8 @@
 """Windows of real land for training: `python prepare.py FOLDER windows.npz`.
 
 FOLDER has the files of places.py. Sea is removed, land of 30 m is averaged to 60 m (the smallest cells of such heights
-are noise of the radar), depressions are breached, and each place is used at its cell and at twice its cell.
+are noise of the radar), depressions are breached, and each place is used at its cell and at twice its cell. Drainage
+areas are those of the whole place.
 """
 
 import argparse
@@ -97,8 +98,33 @@ def breached(heights):
     return np.array(z).reshape(rows + 2, width)[1:-1, 1:-1]
 
 
+def drainage_areas(heights):
+    """Binary logarithms of drainage areas in samples, down the steepest slopes (O'Callaghan and Mark 1984)."""
+    rows, columns = heights.shape
+    bordered = np.full((rows + 2, columns + 2), np.nan)
+    bordered[1:-1, 1:-1] = heights
+    steepest = np.zeros((rows, columns))
+    receiver = np.full((rows, columns), -1)
+    index = np.arange(rows * columns).reshape(rows, columns)
+    for i in (-1, 0, 1):
+        for j in (-1, 0, 1):
+            if (i, j) == (0, 0):
+                continue
+            near = bordered[1 + i : 1 + i + rows, 1 + j : 1 + j + columns]
+            slope = (heights - near) / np.hypot(i, j)
+            is_steeper = slope > steepest
+            steepest = np.where(is_steeper, slope, steepest)
+            receiver = np.where(is_steeper, index + i * columns + j, receiver)
+    areas = [1.0] * heights.size
+    receivers = receiver.ravel().tolist()
+    for at in np.argsort(-heights, axis=None, kind="stable").tolist():
+        if receivers[at] >= 0:
+            areas[receivers[at]] += areas[at]
+    return np.log2(areas).reshape(rows, columns)
+
+
 def windows_of(heights, cell, count, random):
-    """Up to `count` windows of hilly land without voids, in cells, about 0; steep land is chosen more often."""
+    """Rows and columns of up to `count` windows of hilly land without voids; steep land is chosen more often."""
     south, east = np.gradient(heights, cell)
     slope = np.hypot(east, south)
     found = []
@@ -112,7 +138,7 @@ def windows_of(heights, cell, count, random):
         mean = slope[here].mean()
         if mean < 0.05 or (slope[here] < 0.017).mean() > 0.35 or random.random() > mean / 0.25 + 0.15:
             continue
-        found.append((heights[here] - heights[here].mean()) / cell)
+        found.append(here)
     return found
 
 
@@ -122,18 +148,23 @@ def main():
     parser.add_argument("out", type=Path)
     options = parser.parse_args()
     random = np.random.default_rng(SEED)
-    windows, cells = [], []
+    windows, areas, cells = [], [], []
     for place in PLACES:
         heights, cell = heights_of(path_of(place, options.folder))
         if cell < 45:
             heights, cell = halved(heights), 2 * cell
         for count in (WINDOWS, WINDOWS // 3):
-            found = windows_of(breached(heights), cell, count, random)
+            drained = breached(heights)
+            area = drainage_areas(drained)
+            found = windows_of(drained, cell, count, random)
             print(f"{place.file}, cells of {cell:g} m: {len(found)} windows", flush=True)
-            windows += found
+            # In cells, about 0.
+            windows += [(drained[here] - drained[here].mean()) / cell for here in found]
+            areas += [area[here].astype(np.float16) for here in found]
             cells += [cell] * len(found)
             heights, cell = halved(heights), 2 * cell
-    np.savez(options.out, windows=np.array(windows, np.float32), cells=np.array(cells, np.float32))
+    arrays = {"windows": np.array(windows, np.float32), "areas": np.array(areas), "cells": np.array(cells, np.float32)}
+    np.savez(options.out, **arrays)
 
 
 if __name__ == "__main__":

@@ -68,6 +68,7 @@ nodes! {
         Glaciate,
         Glaciers,
         Hillshade,
+        Hillslopes,
         LocalStreamPower,
         Normal,
         Occlusion,

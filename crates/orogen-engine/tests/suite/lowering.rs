@@ -56,7 +56,7 @@ fn every_filter_says_how_a_graphics_card_computes_it() {
             }
         }
     }
-    assert_eq!((lowered, left), (21, vec!["dolines", "droplets", "glaciate", "glaciers"]));
+    assert_eq!((lowered, left), (21, vec!["dolines", "droplets", "glaciate", "glaciers", "hillslopes"]));
 }
 
 #[test]

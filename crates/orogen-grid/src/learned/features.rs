@@ -62,12 +62,19 @@ impl Features {
         features
     }
 
-    /// Writes the features and the noise of the nodes of a row, node by node.
-    pub fn row(&self, j: usize, octave: f32, mut noise: impl FnMut(usize) -> [f32; NOISES], out: &mut [f32]) {
+    /// Writes the features and the noise of the nodes of a row, node by node, each of which has this number of values.
+    pub fn row(
+        &self,
+        j: usize,
+        octave: f32,
+        mut noise: impl FnMut(usize) -> [f32; NOISES],
+        values: usize,
+        out: &mut [f32],
+    ) {
         let here = j * self.width..(j + 1) * self.width;
-        for ((i, at), out) in here.enumerate().zip(out.chunks_exact_mut(FEATURES + NOISES)) {
+        for ((i, at), out) in here.enumerate().zip(out.chunks_exact_mut(values)) {
             let scale = libm::logf(self.scale[at]) + 1.0;
-            let (of_heights, of_noise) = out.split_at_mut(FEATURES);
+            let (of_heights, of_noise) = out[..FEATURES + NOISES].split_at_mut(FEATURES);
             let [east, south] = [self.east[at], self.south[at]];
             of_heights.copy_from_slice(&[east, south, self.bend[at], self.above[at], scale, octave]);
             of_noise.copy_from_slice(&noise(i));

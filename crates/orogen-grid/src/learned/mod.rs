@@ -6,13 +6,17 @@
 //! order, so the bits are the same at every SIMD level.
 //!
 //! `weights` reads the files of networks, `features` computes what the network sees, `convolution` is its layers, and
-//! `network` runs them row by row. The directory `training/` of the repository makes the weights.
+//! `network` runs them row by row. `hillslopes` replaces the land between rivers; `rivers` is what the network sees of
+//! these. The directory `training/` of the repository makes the weights.
 
 mod convolution;
 mod features;
+mod hillslopes;
 mod network;
+mod rivers;
 #[cfg(test)]
 mod tests;
 mod weights;
 
+pub use hillslopes::Drained;
 pub use network::{Draw, Network};

@@ -2,7 +2,8 @@
 
 use super::convolution::Row;
 use super::features::{self, Features};
-use super::weights::{FEATURES, NOISES, PHASES, Weights};
+use super::rivers::Rivers;
+use super::weights::{self, FEATURES, NOISES, PHASES, Weights};
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::progress::Progress;
@@ -37,6 +38,15 @@ impl Network {
     pub fn built_in() -> Result<&'static Network> {
         static NETWORK: OnceLock<Result<Network>> = OnceLock::new();
         NETWORK.get_or_init(|| Network::parse(include_bytes!("land.network"))).as_ref().map_err(Clone::clone)
+    }
+
+    /// The network of [`Network::hillslopes`] whose weights are part of the program.
+    ///
+    /// # Errors
+    /// If the program was built with a broken file of weights.
+    pub fn built_in_of_rivers() -> Result<&'static Network> {
+        static NETWORK: OnceLock<Result<Network>> = OnceLock::new();
+        NETWORK.get_or_init(|| Network::parse(include_bytes!("rivers.network"))).as_ref().map_err(Clone::clone)
     }
 
     /// A network from a file of weights.
@@ -83,17 +93,9 @@ impl Network {
         })?;
         progress.expect(nodes.height as f64);
         let mut out = Grid::filled(*window, 0.0);
-        let features = Features::of(&coarse);
-        let mut layers = Layers::new(self, &features, &read, draw);
+        let mut layers = Layers::new(self, &coarse, draw, None)?;
         for j in 0..nodes.height {
-            let residuals = layers.row(j);
-            for phase in 0..2 {
-                let y = 2 * (nodes.y + j as i64) + phase as i64;
-                if let Some(row) = usize::try_from(y - window.y).ok().filter(|row| *row < window.height) {
-                    let fine = Fine { coarse: &coarse, features: &features, reach, node: j, phase, residuals };
-                    fine.row(window.x - 2 * nodes.x, out.row_mut(row));
-                }
-            }
+            layers.rows(j, &nodes, &mut out);
             progress.step(1.0)?;
         }
         Ok(out)
@@ -101,18 +103,18 @@ impl Network {
 }
 
 /// The coarse samples at, or to the north-west of, the samples of a window.
-fn nodes_of(window: &Window, cell: f64) -> Window {
+pub fn nodes_of(window: &Window, cell: f64) -> Window {
     let [x, y] = [window.x, window.y].map(|first| first.div_euclid(2));
     let [right, bottom] = [window.right(), window.bottom()].map(|end| (end - 1).div_euclid(2) + 1);
     Window { x, y, width: (right - x) as usize, height: (bottom - y) as usize, cell }
 }
 
 /// The layers of a network; each keeps the last three rows that it made.
-struct Layers<'a> {
+pub struct Layers<'a> {
     network: &'a Network,
-    features: &'a Features,
-    /// The coarse samples that are read.
-    read: &'a Window,
+    coarse: &'a Grid,
+    features: Features,
+    rivers: Option<&'a Rivers>,
     draw: &'a Draw,
     octave: f32,
     /// Rows of the features and of each layer, by their number modulo 3, and how many were made.
@@ -123,22 +125,70 @@ struct Layers<'a> {
 }
 
 impl<'a> Layers<'a> {
-    fn new(network: &'a Network, features: &'a Features, read: &'a Window, draw: &'a Draw) -> Layers<'a> {
+    /// The layers over coarse heights.
+    ///
+    /// # Errors
+    /// If the network reads rivers and there are none, or the other way round.
+    pub fn new(
+        network: &'a Network,
+        coarse: &'a Grid,
+        draw: &'a Draw,
+        rivers: Option<&'a Rivers>,
+    ) -> Result<Layers<'a>> {
         let Weights { channels, layers, cells: [least, greatest], .. } = &network.weights;
-        let fine = (0.5 * read.cell).clamp(*least, *greatest);
+        match (network.weights.rivers, rivers) {
+            (true, None) => return Err(other_network("keeps rivers: use it in `hillslopes`")),
+            (false, Some(_)) => return Err(other_network("reads no rivers: use it in `learned`")),
+            _ => {}
+        }
+        let features = Features::of(coarse);
+        let fine = (0.5 * coarse.window().cell).clamp(*least, *greatest);
         let octave = (0.5 * libm::log2(fine / CELL)) as f32;
         let row = |layer: usize| {
-            let values = if layer == 0 { FEATURES + NOISES } else { *channels };
+            let values = if layer == 0 { weights::inputs(network.weights.rivers) } else { *channels };
             std::array::from_fn(|_| vec![0.0; (features.width - 2 * layer) * values])
         };
         let kept = (0..=layers.len()).map(row).collect();
         let nodes = features.width - 2 * layers.len();
         let residuals = vec![[0.0; PHASES]; nodes];
-        Layers { network, features, read, draw, octave, kept, made: vec![0; layers.len() + 1], residuals }
+        Ok(Layers { network, coarse, features, rivers, draw, octave, kept, made: vec![0; layers.len() + 1], residuals })
     }
 
-    /// The residuals of a row of nodes, in units of the scale. Rows are made in order.
-    fn row(&mut self, j: usize) -> &[[f32; PHASES]] {
+    /// Writes the heights of the fine samples at, and south of, a row of nodes, where `out` has them. Rows are made in
+    /// order.
+    pub fn rows(&mut self, j: usize, nodes: &Window, out: &mut Grid) {
+        self.residuals_of(j);
+        let window = *out.window();
+        for phase in 0..2 {
+            let y = 2 * (nodes.y + j as i64) + phase as i64;
+            if let Some(row) = usize::try_from(y - window.y).ok().filter(|row| *row < window.height) {
+                self.fine(j, phase, window.x - 2 * nodes.x, out.row_mut(row));
+            }
+        }
+    }
+
+    /// A row of fine samples from sample `first`, counted from the first node: those at a row of nodes (phase 0), or
+    /// between it and the next one (phase 1).
+    fn fine(&self, j: usize, phase: usize, first: i64, out: &mut [f32]) {
+        let cell = self.coarse.window().cell as f32;
+        let (reach, width) = (self.network.halo(), self.features.width);
+        // The features begin at this node of theirs.
+        let inset = reach - features::REACH;
+        let nodes = [0, 1].map(|below| (j + inset + below) * width + inset);
+        for (sample, out) in (first as usize..).zip(out) {
+            let (i, east) = (sample / 2, sample % 2);
+            let [scale, calm] = [&self.features.scale, &self.features.calm].map(|plane| {
+                let [north, south] = nodes.map(|at| between(plane[at + i], plane[at + i + 1], east));
+                between(north, south, phase)
+            });
+            let residual = self.residuals[i][2 * phase + east];
+            let smooth = interpolated(self.coarse, [i + reach, j + reach], [east, phase]);
+            *out = smooth + residual * scale * (1.0 - calm) * 0.5 * cell;
+        }
+    }
+
+    /// Makes the residuals of a row of nodes, in units of the scale.
+    fn residuals_of(&mut self, j: usize) {
         let last = self.network.weights.layers.len();
         self.make(last, j);
         let Weights { channels, phases, offsets, .. } = &self.network.weights;
@@ -150,7 +200,6 @@ impl<'a> Layers<'a> {
             }
             *out = sums;
         }
-        &self.residuals
     }
 
     /// Makes the rows of a layer up to row `j`.
@@ -164,13 +213,21 @@ impl<'a> Layers<'a> {
                 let is_residual = above > 0;
                 dispatch(Row { layer: &self.network.weights.layers[above], inputs, is_residual, out: &mut out });
             } else {
-                let [x, y] = [self.read.x, self.read.y + row as i64].map(|first| first + features::REACH as i64);
+                let read = self.coarse.window();
+                let [x, y] = [read.x, read.y + row as i64].map(|first| first + features::REACH as i64);
                 let Draw { seed, level, noise } = *self.draw;
                 let noise_at = |i: usize| match noise {
                     0.0 => [0.0; NOISES],
                     _ => features::noise(seed, level, x + i as i64, y).map(|value| noise * value),
                 };
-                self.features.row(row, self.octave, noise_at, &mut out);
+                let values = weights::inputs(self.network.weights.rivers);
+                self.features.row(row, self.octave, noise_at, values, &mut out);
+                if let Some(rivers) = self.rivers {
+                    for (i, out) in out.chunks_exact_mut(values).enumerate() {
+                        let of_rivers = rivers.of_node(self.coarse, &self.features, i, row);
+                        out[FEATURES + NOISES..].copy_from_slice(&of_rivers);
+                    }
+                }
             }
             self.kept[layer][row % 3] = out;
             self.made[layer] += 1;
@@ -178,47 +235,20 @@ impl<'a> Layers<'a> {
     }
 }
 
-/// A row of fine samples: those at a row of nodes (phase 0), or between it and the next one (phase 1).
-struct Fine<'a> {
-    coarse: &'a Grid,
-    features: &'a Features,
-    /// Coarse samples before the first node.
-    reach: usize,
-    node: usize,
-    phase: usize,
-    residuals: &'a [[f32; PHASES]],
+/// Cubic interpolation of coarse heights at a column and a row, and half a cell further where `east` or `south` is 1.
+pub fn interpolated(coarse: &Grid, [column, row]: [usize; 2], [east, south]: [usize; 2]) -> f32 {
+    let along = |row: usize| {
+        let row = &coarse.row(row)[column - 1..column + 3];
+        cubic([row[0], row[1], row[2], row[3]], east)
+    };
+    match south {
+        0 => along(row),
+        _ => cubic([row - 1, row, row + 1, row + 2].map(along), 1),
+    }
 }
 
-impl Fine<'_> {
-    /// The heights from fine sample `first`, counted from the first node.
-    fn row(&self, first: i64, out: &mut [f32]) {
-        let cell = self.coarse.window().cell as f32;
-        // The features begin at this node of theirs.
-        let (inset, width) = (self.reach - features::REACH, self.features.width);
-        let nodes = [0, 1].map(|below| (self.node + inset + below) * width + inset);
-        for (sample, out) in (first as usize..).zip(out) {
-            let (i, phase) = (sample / 2, sample % 2);
-            let [scale, calm] = [&self.features.scale, &self.features.calm].map(|plane| {
-                let [north, south] = nodes.map(|at| between(plane[at + i], plane[at + i + 1], phase));
-                between(north, south, self.phase)
-            });
-            let residual = self.residuals[i][2 * self.phase + phase];
-            *out = self.smooth(i, phase) + residual * scale * (1.0 - calm) * 0.5 * cell;
-        }
-    }
-
-    /// Cubic interpolation of the heights.
-    fn smooth(&self, i: usize, phase: usize) -> f32 {
-        let (column, row) = (i + self.reach, self.node + self.reach);
-        let along = |row: usize| {
-            let row = &self.coarse.row(row)[column - 1..column + 3];
-            cubic([row[0], row[1], row[2], row[3]], phase)
-        };
-        match self.phase {
-            0 => along(row),
-            _ => cubic([row - 1, row, row + 1, row + 2].map(along), 1),
-        }
-    }
+fn other_network(what: &str) -> Error {
+    Error::new(ErrorKind::Recipe, format!("the network of `weights` {what}"))
 }
 
 /// The first of two values, or their mean.

@@ -1,5 +1,5 @@
 use super::weights::Weights;
-use super::{Draw, Network};
+use super::{Drained, Draw, Network};
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 use crate::progress::Progress;
@@ -79,6 +79,86 @@ fn standing_water_stays_level() -> Result<()> {
     Ok(())
 }
 
+/// Land that falls to the south-west along its receivers, with a river in the south and a lake in it.
+struct Valley {
+    height: Grid,
+    flow: Grid,
+    receiver: Grid,
+    lake: Grid,
+}
+
+const CELL: f64 = 60.0;
+const RIVERS: u32 = 16;
+
+impl Valley {
+    fn of(window: Window) -> Valley {
+        let mut height = land(Window { cell: CELL, ..window });
+        let mut flow = Grid::filled(window, (CELL * CELL) as f32);
+        let mut receiver = Grid::filled(window, 3.0);
+        let mut lake = Grid::filled(window, 0.0);
+        for j in 0..window.height {
+            for i in 0..window.width {
+                let [x, y] = [window.x + i as i64, window.y + j as i64];
+                // Steep enough that each sample is above its receiver, except on the waves.
+                height.row_mut(j)[i] += (20 * (x - y)) as f32;
+                if y.rem_euclid(12) == 0 {
+                    (flow.row_mut(j)[i], receiver.row_mut(j)[i]) = (1e6, 4.0);
+                    height.row_mut(j)[i] = (40 * x) as f32;
+                    lake.row_mut(j)[i] = f32::from(u8::from(x.rem_euclid(31) == 0));
+                }
+            }
+        }
+        Valley { height, flow, receiver, lake }
+    }
+
+    fn made(&self, window: &Window) -> Result<Grid> {
+        let land = Drained { height: &self.height, flow: &self.flow, receiver: &self.receiver, lake: Some(&self.lake) };
+        let draw = Draw { seed: 7, level: 1, noise: 1.0 };
+        Network::built_in_of_rivers()?.hillslopes(&land, window, RIVERS, &draw, &Progress::none())
+    }
+}
+
+#[test]
+fn hillslopes_keep_rivers_and_drain_to_them() -> Result<()> {
+    let network = Network::built_in_of_rivers()?;
+    let inside = Window::new(70, 60, CELL).at(-5, -11);
+    let valley = Valley::of(inside.grown(network.halo_of_hillslopes(RIVERS)));
+    let made = valley.made(&inside)?;
+    let before = valley.height.crop(&inside).unwrap_or_else(|| Grid::filled(inside, 0.0));
+    let mut changed = 0;
+    for j in 1..inside.height - 1 {
+        for i in 1..inside.width {
+            let is_river = (inside.y + j as i64).rem_euclid(12) == 0;
+            if is_river {
+                assert_eq!(made.row(j)[i], before.row(j)[i], "river at {i}, {j}");
+            } else {
+                changed += usize::from((made.row(j)[i] - before.row(j)[i]).abs() > 0.1);
+                assert!(made.row(j)[i] > made.row(j + 1)[i - 1], "{i}, {j} is not above its receiver");
+            }
+        }
+    }
+    assert!(changed * 10 > inside.len() * 8, "only {changed} samples were changed");
+    for part in [Window::new(17, 9, CELL).at(0, 3), Window::new(1, 1, CELL).at(-5, -11), Window::new(40, 2, CELL)] {
+        let needed = Valley::of(part.grown(network.halo_of_hillslopes(RIVERS)));
+        assert_eq!(Some(needed.made(&part)?), made.crop(&part), "{part:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_network_is_used_for_what_it_has_learned() -> Result<()> {
+    let valley = Valley::of(Window::new(200, 200, CELL));
+    let land = Drained { height: &valley.height, flow: &valley.flow, receiver: &valley.receiver, lake: None };
+    let draw = Draw { seed: 7, level: 1, noise: 1.0 };
+    let window = Window::new(4, 4, CELL).at(98, 98);
+    let refused = |made: Result<Grid>| made.err().map(|error| error.to_string()).unwrap_or_default();
+    let made = Network::built_in()?.hillslopes(&land, &window, RIVERS, &draw, &Progress::none());
+    assert!(refused(made).contains("reads no rivers: use it in `learned`"));
+    let made = Network::built_in_of_rivers()?.refine(&coarse(), &inside(), &draw, &Progress::none());
+    assert!(refused(made).contains("keeps rivers: use it in `hillslopes`"));
+    Ok(())
+}
+
 #[test]
 fn a_file_that_was_changed_is_refused() {
     let message = |file: &[u8]| Weights::parse(file).err().map(|error| error.to_string()).unwrap_or_default();
@@ -98,6 +178,8 @@ fn a_file_that_was_changed_is_refused() {
     assert!(with("channels 32", "channels 40").contains("not a multiple of 16"));
     assert!(with("channels 32", "channels 1000000").contains("not a number from 1 to 256"));
     assert!(with("layers 4", "layers 0").contains("not a number from 1 to 16"));
+    assert!(with("cells 60 180", "cells 60 180\nrivers no").contains("`rivers no` is not `rivers yes`"));
+    assert!(with("cells 60 180", "cells 60 180\nrivers yes").contains("bytes of weights instead of"));
     assert!(with("cells 60 180", "cells 60").contains("two cells in metres"));
     assert!(with("sha256", "sha512").contains("no line `sha256`"));
     // Any header is read or refused.

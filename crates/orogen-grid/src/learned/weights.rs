@@ -12,7 +12,7 @@
 //! ```
 //!
 //! `cells` are the smallest and the largest fine cell of the land in training, in metres. `land` and unknown lines may
-//! be repeated.
+//! be repeated. With `rivers yes` the network also reads the beds of rivers and their drainage areas.
 
 use super::convolution::{Convolution, TAPS};
 use crate::error::{Error, ErrorKind, Result};
@@ -28,6 +28,8 @@ pub const FEATURES: usize = 6;
 pub const NOISES: usize = 4;
 /// Number of fine samples in a coarse cell.
 pub const PHASES: usize = 4;
+/// What the network reads of rivers at a coarse sample: for each of its fine ones, the bed and the drainage area.
+pub const OF_RIVERS: usize = 2 * PHASES;
 /// Channels are a multiple of this number, the lanes of the widest SIMD level, and at most [`MAX_CHANNELS`].
 const CHANNEL_STEP: usize = 16;
 const MAX_CHANNELS: usize = 256;
@@ -39,6 +41,8 @@ const MAX_LAYERS: usize = 16;
 pub struct Weights {
     /// Channels of each hidden layer.
     pub channels: usize,
+    /// Whether the network reads rivers.
+    pub rivers: bool,
     pub layers: Vec<Convolution>,
     /// Weights from each channel to the fine samples of a coarse cell, and what is added to them.
     pub phases: Vec<[f32; PHASES]>,
@@ -76,7 +80,12 @@ impl Weights {
         }
         let count = whole(field("layers")?, "layers", MAX_LAYERS)?;
         let cells = cells(field("cells")?)?;
-        let (length, expected) = (body.len(), bytes(channels, count));
+        let rivers = match field("rivers") {
+            Err(_) => false,
+            Ok("yes") => true,
+            Ok(other) => return Err(broken(format!("`rivers {other}` is not `rivers yes`"))),
+        };
+        let (length, expected) = (body.len(), bytes(rivers, channels, count));
         if length != expected {
             return Err(broken(format!("it has {length} bytes of weights instead of {expected}")));
         }
@@ -92,7 +101,7 @@ impl Weights {
         let mut take = |count: usize| -> Vec<f32> { numbers.by_ref().take(count).collect() };
         let layers = (0..count)
             .map(|layer| {
-                let inputs = if layer == 0 { FEATURES + NOISES } else { channels };
+                let inputs = if layer == 0 { inputs(rivers) } else { channels };
                 Convolution {
                     inputs,
                     outputs: channels,
@@ -102,7 +111,7 @@ impl Weights {
             })
             .collect();
         let phases = take(channels * PHASES).chunks_exact(PHASES).map(four).collect();
-        Ok(Weights { channels, layers, phases, offsets: four(&take(PHASES)), cells })
+        Ok(Weights { channels, rivers, layers, phases, offsets: four(&take(PHASES)), cells })
     }
 }
 
@@ -123,9 +132,14 @@ fn cells(text: &str) -> Result<[f64; 2]> {
     pair.ok_or_else(|| broken(format!("`cells {text}` are not two cells in metres, the smaller one first")))
 }
 
+/// Inputs of the first layer.
+pub const fn inputs(rivers: bool) -> usize {
+    FEATURES + NOISES + if rivers { OF_RIVERS } else { 0 }
+}
+
 /// Bytes of all weights.
-fn bytes(channels: usize, layers: usize) -> usize {
-    let first = TAPS * (FEATURES + NOISES) * channels + channels;
+fn bytes(rivers: bool, channels: usize, layers: usize) -> usize {
+    let first = TAPS * inputs(rivers) * channels + channels;
     let others = (layers - 1) * (TAPS * channels * channels + channels);
     4 * (first + others + PHASES * channels + PHASES)
 }

@@ -136,6 +136,17 @@ impl NetworkFile {
             None => Network::built_in(),
         }
     }
+
+    /// The network of `hillslopes`. Before the file was read, it is the one that is part of the program.
+    ///
+    /// # Errors
+    /// If the program was built with a broken file of weights.
+    pub fn network_of_rivers(&self) -> Result<&Network> {
+        match &self.0.network {
+            Some(read) => Ok(&read.network),
+            None => Network::built_in_of_rivers(),
+        }
+    }
 }
 
 /// Equality compares the names of files and layers, not their content.

@@ -83,6 +83,7 @@ pub static ALL: [OpGroup; 9] = [
             "thermal",
             "soil-depth",
             "dolines",
+            "hillslopes",
             "glaciate",
             "glaciers",
             "dunes",

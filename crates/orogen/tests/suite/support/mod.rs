@@ -120,6 +120,8 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ("droplets", "radius") => Value::Number(2.2 * world.cell),
             ("droplets", "density") => Value::Number(1e6 / (world.cell * world.cell)),
             ("glaciate", "max_width") => Value::Number(5.0 * world.cell),
+            // Reads fewer samples around.
+            ("hillslopes", "rivers") => Value::Integer(8),
             // Four on a hundred samples, on ground of any slope.
             ("dolines", "density") => Value::Number((0.04e6 / (world.cell * world.cell)).min(1e6)),
             ("dolines", "diameters") => pair(2.3 * world.cell, 11.0 * world.cell),
