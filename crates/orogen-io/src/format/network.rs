@@ -17,6 +17,7 @@ const MAX_LENGTH: u64 = 1 << 26;
 const MEMORY_PER_BYTE: u64 = 2;
 
 /// A network that was read from a file.
+#[doc(hidden)]
 #[derive(Debug)]
 pub struct NetworkWeights {
     /// The network.
