@@ -67,8 +67,9 @@ impl Network {
     #[must_use]
     pub fn scratch(&self, width: usize, height: usize) -> u64 {
         // Planes: smooth heights and squares with the rows of a pass each, and six features.
-        let planes = 10 * 4 * (width as u64).saturating_mul(height as u64);
-        let rows = 4 * self.rows_in_memory() as u64 * (width as u64) * self.weights.channels as u64;
+        let planes = (width as u64).saturating_mul(height as u64).saturating_mul(10 * 4);
+        let rows = (4 * self.rows_in_memory() * self.weights.channels) as u64;
+        let rows = rows.saturating_mul(width as u64);
         planes.saturating_add(rows)
     }
 
