@@ -2,6 +2,7 @@
 
 mod peers;
 mod realism;
+mod refine;
 mod report;
 
 use std::path::PathBuf;
@@ -13,7 +14,8 @@ pub const ABOUT: &str = "compare with other libraries and the machine's limits; 
 
 pub const HELP: &str = "
 Usage: cargo xtask bench [AREA] [--json FILE] [--case TEXT] [--quick]
-       cargo xtask bench realism --score SCRIPT --dems DIR [--half HALF] [--first SEED] [--case TEXT]
+       cargo xtask bench realism [--peers] [--half HALF] [--first SEED] [--case TEXT]
+       cargo xtask bench refine --dems DIR [--factor N]
        cargo xtask bench coasts SOURCE... [--seed N] [--cell M] [--window X,Y,W,H]
        cargo xtask bench valleys SOURCE... [--seed N] [--cell M] [--window X,Y,W,H]
        cargo xtask bench fans SOURCE... [--seed N] [--cell M] [--window X,Y,W,H]
@@ -44,13 +46,19 @@ Builds the benches at full optimization, measures one area (or all in turn) and 
   --case TEXT  only cases whose name contains TEXT
   --quick      few repetitions: only to check that it runs
 
-Area realism, only if it is named: compares mountains with all real places, and every preset with land of its type, 16 seeds each; fails if a target is
-missed.
+Area realism, only if it is named: compares every preset with windows of real land of its type, 16 seeds each, by the scripts of the folder `realism`
+(OROGEN_REALISM names a Python that has the packages of its requirements.txt); fails if a target is missed.
 
-  --score SCRIPT  the script that compares rasters, with its list of types beside it (Python; OROGEN_REALISM names one that has numpy, scipy, rasterio and numba)
-  --dems DIR      the real places, GeoTIFFs of 30 to 90 m
+  --peers         other generators beside presets, 6 seeds each, as a table in Markdown, without targets (fastscapelib and landlab are installed with pip, as
+                  above; OROGEN_FASTSCAPELIB and OROGEN_LANDLAB name a Python that has them): docs/realism.md
   --half HALF     first or second: compares with every second region of each type only; what is tuned on one half is reported on the other
   --first SEED    the first of the seeds [default: from the clock]
+
+Area refine, only if it is named: averages real places to several times their cell, refines them by `orogen refine` and by cubic interpolation, and compares
+them with the original: errors of heights, rivers, depressions, realism.
+
+  --dems DIR      the real places, GeoTIFFs of 30 to 90 m
+  --factor N      averages to 2, 4 or 8 times the cell [default: 4]
 
 Area coasts, only if it is named: measures continents: the share of land, the dimension of the coast by counted boxes of 2 and 16 cells, islands below 1000
 cells, the share of the sea at distances from the coast that is shallower than 200 m, and the heights of the land.
@@ -97,8 +105,11 @@ const PYTHON: &str = "python";
 /// An area that builds the libraries of graphics drivers, so it is measured only if it is named.
 const GPU: &str = "gpu";
 
-/// An area that needs files that are not part of the project, so it is measured only if it is named.
+/// An area that takes long, so it is measured only if it is named.
 const REALISM: &str = "realism";
+
+/// An area that needs files that are not part of the project, so it is measured only if it is named.
+const REFINE: &str = "refine";
 
 /// Areas that measure recipes, so they run only if they are named.
 const WATER: &str = "water";
@@ -114,6 +125,10 @@ struct Options {
     passed: Vec<String>,
     /// Options of area `realism`.
     realism: realism::Options,
+    /// The real places of area `refine`.
+    dems: Option<PathBuf>,
+    /// Its coarse cell over the fine one.
+    factor: Option<String>,
 }
 
 /// Runs the measurements.
@@ -135,6 +150,10 @@ pub fn run(args: &[String]) -> Result {
     for area in areas {
         if area == REALISM {
             realism::run(&options.realism, &program)?;
+            continue;
+        }
+        if area == REFINE {
+            refine::run(options.dems.as_deref(), options.factor.as_deref().unwrap_or("4"), &program)?;
             continue;
         }
         let features = if area == GPU { "peers,gpu" } else { "peers" };
@@ -170,21 +189,22 @@ fn parse(args: &[String]) -> Result<Options> {
                 options.passed.extend([arg.clone(), text]);
             }
             "--half" => options.realism.half = Some(realism::Half::parse(&value()?)?),
-            "--score" => options.realism.score = Some(value()?.into()),
-            "--dems" => options.realism.dems = Some(value()?.into()),
+            "--dems" => options.dems = Some(value()?.into()),
+            "--factor" => options.factor = Some(value()?),
+            "--peers" => options.realism.peers = true,
             "--first" => {
                 let seed = value()?;
                 let seed = seed.parse().map_err(|_| Failure::usage(format!("'{seed}' is no seed: a whole number")))?;
                 options.realism.first = Some(seed);
             }
             "--quick" => options.passed.push(arg.clone()),
-            area if (AREAS.contains(&area) || [REALISM, GPU].contains(&area)) && options.area.is_none() => {
+            area if (AREAS.contains(&area) || [REALISM, REFINE, GPU].contains(&area)) && options.area.is_none() => {
                 options.area = Some(area.to_owned())
             }
             flag if flag.starts_with('-') => return Err(Failure::usage(format!("there is no option '{flag}'"))),
             other => {
                 return Err(Failure::usage(format!(
-                    "there is no area '{other}'; there are: {}, {COASTS}, {FANS}, {REALISM}, {VALLEYS}, {WATER}",
+                    "there is no area '{other}'; there are: {}, {COASTS}, {FANS}, {REALISM}, {REFINE}, {VALLEYS}, {WATER}",
                     AREAS.join(", ")
                 )));
             }
@@ -207,9 +227,9 @@ mod tests {
         assert_eq!(options.area.as_deref(), Some("noise"));
         assert_eq!(options.json, Some("a.json".into()));
         assert_eq!(options.passed, ["--case", "perlin", "--quick"]);
-        let options = parsed("realism --score s.py --dems d --first 7 --case far").expect("well formed");
+        let options = parsed("realism --peers --first 7 --case far").expect("well formed");
         assert_eq!((options.area.as_deref(), options.realism.first), (Some("realism"), Some(7)));
-        assert_eq!((options.realism.score, options.realism.case), (Some("s.py".into()), Some("far".into())));
+        assert_eq!((options.realism.peers, options.realism.case), (true, Some("far".into())));
         for (line, expect) in [
             ("nois", "there is no area 'nois'; there are: noise, erosion, generate"),
             ("--json", "--json needs a value"),

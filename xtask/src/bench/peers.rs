@@ -32,6 +32,13 @@ const PEERS: &[Peer] = &[
         pythons: &["python3", "python3.12", "python3.11", "python3.10"],
     },
     Peer {
+        areas: &[],
+        variable: "OROGEN_LANDLAB",
+        name: "landlab",
+        packages: &["numpy", "landlab==2.10.1"],
+        pythons: PYTHONS,
+    },
+    Peer {
         areas: &["erosion"],
         variable: "OROGEN_MATPLOTLIB",
         name: "matplotlib",
@@ -113,6 +120,11 @@ const OURS: Peer = Peer {
 pub fn installed(area: &str) -> Vec<(&'static str, PathBuf)> {
     let peers = PEERS.iter().filter(|peer| peer.areas.contains(&area));
     peers.filter_map(|peer| Some((peer.variable, install(peer)?))).collect()
+}
+
+/// The Python of a peer that can be installed, by its variable.
+pub fn python(variable: &str) -> Option<PathBuf> {
+    install(PEERS.iter().find(|peer| peer.variable == variable)?)
 }
 
 /// Installs our own package from the release build; returns its Python with its variable.
