@@ -29,6 +29,7 @@ WORKS = {
     "blocks": "World.blocks",
     "tilemap": "World.tilemap",
     "build": "World.build",
+    "refine": "World.refined",
     "fit": "orogen.fit",
 }
 

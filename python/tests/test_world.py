@@ -248,13 +248,16 @@ def test_statistics_and_fits_and_finer_land(tmp_path: Path) -> None:
     finer = place.refined(30.0)
     assert finer.cell == 30 and finer.window().shape == (2 * land.shape[0], 2 * land.shape[1])
     assert np.array_equal(pickle.loads(pickle.dumps(finer)).window(size=64), finer.window(size=64))
-    likely, draw = place.refined(30.0, "learned", noise=0), place.refined(30.0, "learned")
+    likely, draw = place.refined(30.0, detail="learned", noise=0), place.refined(30.0, detail="learned")
     assert not np.array_equal(likely.window(size=64), draw.window(size=64))
     assert np.array_equal(pickle.loads(pickle.dumps(draw)).window(size=64), draw.window(size=64))
-    with pytest.raises(ValueError, match="'rivers' or 'learned'"):
-        place.refined(30.0, "fractal")  # type: ignore[arg-type]
-    with pytest.raises(orogen.errors.Error, match="noise"):
-        place.refined(30.0, "learned", noise=5)
+    assert place.refined().cell == 7.5
+    with pytest.raises(orogen.errors.RequestError, match="rivers or learned"):
+        place.refined(30.0, detail="fractal")
+    with pytest.raises(orogen.errors.RequestError, match="from 0 to 2"):
+        place.refined(30.0, detail="learned", noise=5)
+    with pytest.raises(orogen.errors.RequestError, match="applies to"):
+        place.refined(30.0, noise=0)
     with pytest.raises(orogen.errors.RequestError, match="refined"):
         place.refined(45.0)
     with pytest.raises(orogen.errors.RequestError, match="only heights"):

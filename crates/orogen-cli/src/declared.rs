@@ -11,6 +11,7 @@ use orogen::export::registry;
 use orogen::export::targets::job::EngineJob;
 use orogen::fit::FitJob;
 use orogen::jobs::noise::NoiseJob;
+use orogen::jobs::refine::RefineJob;
 use orogen::jobs::variants::VariantsJob;
 use orogen::jobs::{AnalyzeJob, BlocksJob, GrowJob, MapJob, RenderJob};
 use orogen::locate::LocateJob;
@@ -73,6 +74,7 @@ jobs!(
     VariantsJob,
     BuildSpec,
     GrowJob,
+    RefineJob,
     AnalyzeJob,
     LocateJob,
     FitJob,

@@ -45,11 +45,12 @@ fn water_recipe(op: &str) -> Option<Recipe> {
         "height-above-drainage" => "stream = 1e5\n",
         "stream-power" => "steps = 1\nyears = 30000\n",
         "amplify" => "flow = \"rivers.flow\"\ncell = 60\nhalvings = 3\n",
+        "learned" => "cell = 60\nhalvings = 3\n",
         "continents" => "",
         _ => return None,
     };
     let source = match op {
-        "amplify" => "source = \"rivers\"\n",
+        "amplify" | "learned" => "source = \"rivers\"\n",
         "continents" => "",
         _ => "source = \"baked\"\n",
     };

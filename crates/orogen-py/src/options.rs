@@ -6,6 +6,7 @@ use orogen::export::registry;
 use orogen::export::targets::job::EngineJob;
 use orogen::fit::FitJob;
 use orogen::jobs::noise::NoiseJob;
+use orogen::jobs::refine::RefineJob;
 use orogen::jobs::{BlocksJob, MapJob, RenderJob};
 use orogen::options::{OptionSpec, Options, ValueKind};
 use orogen::tilemap::TilemapJob;
@@ -27,6 +28,7 @@ pub fn of_work(work: &str) -> Vec<&'static OptionSpec> {
         "tilemap" => TilemapJob::OPTIONS.iter().collect(),
         "build" => BuildSpec::OPTIONS.iter().collect(),
         "fit" => FitJob::OPTIONS.iter().collect(),
+        "refine" => RefineJob::OPTIONS.iter().collect(),
         "noise" => NoiseJob::OPTIONS.iter().collect(),
         _ => Vec::new(),
     }

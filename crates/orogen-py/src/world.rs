@@ -15,10 +15,11 @@ use orogen::io::format::dem::Dem;
 use orogen::io::format::notes::SOFTWARE;
 use orogen::io::format::png::{self, Picture, Pixel};
 use orogen::jobs::AnalyzeJob;
+use orogen::jobs::refine::RefineJob;
 use orogen::options::Options;
 use orogen::output::map::Painter;
+use orogen::recipe::RecipeSource;
 use orogen::recipe::presets as library;
-use orogen::recipe::{Detail, RecipeSource};
 use orogen::view::{Bounds, Rectangle, Size, View};
 use orogen::world::HEIGHT;
 use orogen::{
@@ -301,22 +302,18 @@ impl World {
         })
     }
 
-    /// The same place at a smaller cell, with invented detail: learned detail if a noise is given.
-    #[pyo3(signature = (cell, noise, network))]
-    fn refined(&self, py: Python<'_>, cell: f64, noise: Option<f64>, network: String) -> PyResult<World> {
+    /// The same place at a smaller cell, with invented detail.
+    fn refined(&self, py: Python<'_>, cell: Option<f64>, options: &Bound<'_, PyDict>) -> PyResult<World> {
         if !self.is_place {
             return Err(refused(
                 py,
                 "only heights can be refined: a file of heights or an array; choose `cell` in `window`",
             ));
         }
+        let options = of_keywords(&of_work("refine"), options)?;
         run(py, None, |_| {
             let mut recipe = self.world.recipe().clone();
-            let detail = match noise {
-                Some(noise) => Detail::Learned { noise, network },
-                None => Detail::Rivers,
-            };
-            recipe.refine_place(cell, &detail)?;
+            RefineJob::new(&options)?.prepare(&mut recipe, cell)?;
             let world = Arc::new(self.session.open(recipe)?);
             let (session, inputs) = (self.session.clone(), self.inputs.clone());
             Ok(World { world, session, inputs, is_place: false, notes: Vec::new() })

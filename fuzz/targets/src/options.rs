@@ -14,6 +14,7 @@ use orogen::fit::FitJob;
 use orogen::io::format::crs::Crs;
 use orogen::io::palette::names;
 use orogen::jobs::noise::NoiseJob;
+use orogen::jobs::refine::RefineJob;
 use orogen::jobs::variants::VariantsJob;
 use orogen::jobs::{AnalyzeJob, BlocksJob, GrowJob, MapJob, RenderJob};
 use orogen::options::Options;
@@ -70,7 +71,8 @@ pub fn run(input: &[u8]) {
     let of_files = registry::options().into_iter().map(|(spec, _)| spec);
     let of_layers = list::options().into_iter().map(|(spec, _)| spec);
     let of_jobs = [MapJob::OPTIONS, RenderJob::OPTIONS, TilemapJob::OPTIONS, BlocksJob::OPTIONS].into_iter().flatten();
-    let of_pictures = [NoiseJob::OPTIONS, VariantsJob::OPTIONS, GrowJob::OPTIONS].into_iter().flatten();
+    let of_pictures =
+        [NoiseJob::OPTIONS, VariantsJob::OPTIONS, GrowJob::OPTIONS, RefineJob::OPTIONS].into_iter().flatten();
     let of_others =
         [BuildSpec::OPTIONS, EngineJob::OPTIONS, AnalyzeJob::OPTIONS, FitJob::OPTIONS].into_iter().flatten();
     let mut options = Options::default();

@@ -407,6 +407,18 @@ class BuildOptions(TypedDict, total=False):
     """Kind of the tiles in a folder or a .pmtiles file"""
 
 
+class RefineOptions(TypedDict, total=False):
+    """Keywords of `World.refined`."""
+
+    detail: str | None
+    """How detail is made [default: rivers]"""
+    network: str | PathLike[str] | None
+    """File with a network for learned detail [default: the network that is part of Orogen]"""
+    noise: float | None
+    """How much of learned detail is chance, from 0 (the most likely heights) to 1 (the look of real land) and 2
+    [default: 1]"""
+
+
 class FitOptions(TypedDict, total=False):
     """Keywords of `orogen.fit`."""
 

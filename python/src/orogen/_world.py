@@ -28,6 +28,7 @@ if TYPE_CHECKING:
         FitOptions,
         LayerOptions,
         MapOptions,
+        RefineOptions,
         RenderOptions,
         TilemapOptions,
     )
@@ -444,29 +445,19 @@ class World:
         made: dict[str, Any] = json.loads(text)
         return made
 
-    def refined(
-        self,
-        cell: float,
-        detail: Literal["rivers", "learned"] = "rivers",
-        *,
-        noise: float = 1.0,
-        network: str | os.PathLike[str] | None = None,
-    ) -> World:
-        """Heights of a file or an array at a smaller cell.
+    def refined(self, cell: float | None = None, **options: Unpack[RefineOptions]) -> World:
+        """Heights of a file or an array at a smaller cell, by default an eighth of theirs.
 
         With `detail="rivers"` their rivers are kept, and side valleys and slopes are added. With `detail="learned"` a
-        network adds what real land has at the smaller cell, and depressions are drained; `noise` is the share of chance,
-        from 0 (the most likely heights) to 1 (the look of real land) and 2, and `network` a file with another network.
+        network adds what real land has at the smaller cell, and depressions are drained; `noise` is the share of chance.
+        See `orogen refine`.
 
         Layers: `height` and `flow` (drainage area).
         """
-        if detail not in ("rivers", "learned"):
-            raise ValueError(f"detail={detail!r} is not 'rivers' or 'learned'")
         made = World.__new__(World)
         made._name = self._name
-        share = noise if detail == "learned" else None
-        made._native = self._native.refined(cell, share, "" if network is None else os.fspath(network))
-        made._arguments = self._arguments | {"refined": {"cell": cell, "detail": detail, "noise": noise, "network": network}}
+        made._native = self._native.refined(cell, dict(options))
+        made._arguments = self._arguments | {"refined": {"cell": cell, **options}}
         return made
 
     def to_xarray(

@@ -6,9 +6,9 @@ use orogen::Recipe;
 use orogen::export::{ExportJob, registry};
 use orogen::grid::words::number;
 use orogen::io::file::mark;
-use orogen::recipe::Detail;
+use orogen::jobs::refine::RefineJob;
 
-use crate::declared::FormatOptions;
+use crate::declared::{FormatOptions, OptionsOf};
 use crate::failure::Failure;
 use crate::options::{Opened, RunOptions};
 use crate::sink::{Sink, is_stdout};
@@ -28,16 +28,8 @@ pub struct Args {
     /// Layer to write: height, flow (drainage area), or a layer derived from the heights as in `export`
     #[arg(long, value_name = "L", default_value = orogen::world::HEIGHT)]
     layer: String,
-    /// How detail is made
-    #[arg(long, value_name = "HOW", default_value = "rivers")]
-    detail: How,
-    /// How much of learned detail is chance, from 0 (the most likely heights) to 1 (the look of real land) and 2
-    /// [default: 1]
-    #[arg(long, value_name = "SHARE")]
-    noise: Option<f64>,
-    /// File with a network for learned detail [default: the network that is part of Orogen]
-    #[arg(long, value_name = "FILE")]
-    network: Option<PathBuf>,
+    #[command(flatten)]
+    refine: OptionsOf<RefineJob>,
     #[command(flatten)]
     samples: View,
     #[command(flatten)]
@@ -45,34 +37,6 @@ pub struct Args {
     #[command(flatten)]
     options: FormatOptions,
 }
-
-/// The values of `--detail`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum How {
-    /// The rivers of the file are continued, and valleys and slopes are added between them
-    Rivers,
-    /// A network that learned from real land adds what such land has at the smaller cell, and depressions are drained
-    Learned,
-}
-
-impl Args {
-    fn detail(&self) -> Result<Detail, Failure> {
-        let noise = self.noise.unwrap_or(1.0);
-        if !(0.0..=2.0).contains(&noise) {
-            return Err(Failure::Usage(format!("--noise {noise} is not from 0 to 2")));
-        }
-        let network = self.network.as_ref().map(|file| file.display().to_string()).unwrap_or_default();
-        match self.detail {
-            How::Learned => Ok(Detail::Learned { noise, network }),
-            How::Rivers if self.noise.is_none() && network.is_empty() => Ok(Detail::Rivers),
-            How::Rivers => Err(Failure::Usage("--noise and --network need --detail learned".to_string())),
-        }
-    }
-}
-
-/// Number by which the cell is divided if none is given: the halvings up to which the result is about as realistic as
-/// real land.
-const FINER: f64 = 8.0;
 
 /// Refines the place.
 pub fn run(args: &Args) -> Result<(), Failure> {
@@ -92,10 +56,10 @@ fn refine(args: &Args) -> Result<(), Failure> {
             args.place.display()
         )));
     }
-    let detail = args.detail()?;
+    let refining = RefineJob::new(&args.refine.read()?)?;
     let Opened { mut recipe, budget, policy, .. } = args.run.read(&args.place, &args.samples)?;
     let coarse = recipe.world.cell;
-    recipe.refine_place(args.samples.cell.unwrap_or(coarse / FINER), &detail)?;
+    refining.prepare(&mut recipe, args.samples.cell)?;
     let sink = Sink::new(&args.out, &policy)?;
     let Some(format) = format else { return write_recipe(args, &recipe, &sink) };
     let job = ExportJob::new(format).with_layer(&args.layer).with_options(args.options.read()?);

@@ -8,6 +8,7 @@ use crate::values::seeds;
 use orogen::export::targets::job::EngineJob;
 use orogen::fit::FitJob;
 use orogen::jobs::noise::NoiseJob;
+use orogen::jobs::refine::RefineJob;
 use orogen::jobs::{AnalyzeJob, GrowJob, MapJob, RenderJob};
 use orogen::options::{OptionSpec, Options};
 use orogen::output::sheet::paper::Paper;
@@ -28,7 +29,7 @@ where
 /// The declared options of jobs.
 fn declared() -> impl Iterator<Item = &'static OptionSpec> {
     let drawn = [MapJob::OPTIONS, RenderJob::OPTIONS, NoiseJob::OPTIONS, GrowJob::OPTIONS];
-    let others = [AnalyzeJob::OPTIONS, FitJob::OPTIONS, EngineJob::OPTIONS];
+    let others = [AnalyzeJob::OPTIONS, FitJob::OPTIONS, EngineJob::OPTIONS, RefineJob::OPTIONS];
     drawn.into_iter().chain(others).flatten()
 }
 

@@ -160,9 +160,11 @@ fn other_networks_are_read_and_broken_ones_refused() {
     ] {
         folder.bad(&[&learned[..], &["--network", network, "-o", "a.npy"]].concat(), 1, expect);
     }
-    folder.bad(&[&learned[..], &["--noise", "3", "-o", "a.npy"]].concat(), 2, "--noise 3 is not from 0 to 2");
-    let rivers = ["refine", "place.tif", "--noise", "0", "-o", "a.npy"];
-    folder.bad(&rivers, 2, "--noise and --network need --detail learned");
+    folder.bad(&[&learned[..], &["--noise", "3", "-o", "a.npy"]].concat(), 2, "it must be a number from 0 to 2");
+    for option in [["--noise", "0"], ["--network", "small.network"]] {
+        let rivers = [&["refine", "place.tif", "-o", "a.npy"], &option[..]].concat();
+        folder.bad(&rivers, 2, &format!("{} applies to --detail learned", option[0]));
+    }
 }
 
 #[test]

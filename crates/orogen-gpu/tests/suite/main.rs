@@ -5,6 +5,7 @@ mod common;
 mod derived;
 mod filters;
 mod job;
+mod learned;
 mod level_layers;
 mod levels;
 mod noise;

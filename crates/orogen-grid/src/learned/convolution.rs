@@ -5,7 +5,7 @@ use orogen_simd::{Body, F32Lanes, Simd};
 /// Nodes that a value reads: 3 x 3.
 pub const TAPS: usize = 9;
 /// What is left of values below 0.
-const LEAK: f32 = 0.1;
+pub const LEAK: f32 = 0.1;
 /// Nodes whose sums are kept in registers at a time.
 const NODES: usize = 6;
 

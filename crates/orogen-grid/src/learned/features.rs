@@ -9,7 +9,7 @@ pub const PASSES: usize = 4;
 /// Nodes that the features of a node read on each side: one for its slope, and the passes.
 pub const REACH: usize = PASSES + 1;
 /// Square of the slope below which ground counts as level.
-const LEVEL: f32 = 4e-4;
+pub const LEVEL: f32 = 4e-4;
 
 /// The features of the nodes of heights that are at least [`REACH`] nodes from their border.
 pub struct Features {

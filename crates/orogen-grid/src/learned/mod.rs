@@ -6,17 +6,22 @@
 //! order, so the bits are the same at every SIMD level.
 //!
 //! `weights` reads the files of networks, `features` computes what the network sees, `convolution` is its layers, and
-//! `network` runs them row by row. `hillslopes` replaces the land between rivers; `rivers` is what the network sees of
-//! these. The directory `training/` of the repository makes the weights.
+//! `network` runs them row by row; `lowered` has their numbers for shaders. `hillslopes` replaces the land between
+//! rivers; `rivers` is what the network sees of these. The directory `training/` of the repository makes the weights.
 
 mod convolution;
 mod features;
 mod hillslopes;
+mod lowered;
 mod network;
 mod rivers;
 #[cfg(test)]
 mod tests;
 mod weights;
 
+/// Maximum factor of the noise of a draw.
+pub const MAX_NOISE: f64 = 2.0;
+
 pub use hillslopes::Drained;
+pub use lowered::Words;
 pub use network::{Draw, Network};

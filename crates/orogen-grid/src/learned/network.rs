@@ -16,7 +16,7 @@ const CELL: f64 = 75.0;
 /// A network that makes heights at half the cell of given ones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Network {
-    weights: Weights,
+    pub(super) weights: Weights,
 }
 
 /// Which of the lands that fit the coarse heights is made.
@@ -57,6 +57,12 @@ impl Network {
         Ok(Network { weights: Weights::parse(file)? })
     }
 
+    /// Whether the network keeps rivers, for [`Network::hillslopes`].
+    #[must_use]
+    pub fn keeps_rivers(&self) -> bool {
+        self.weights.rivers
+    }
+
     /// Number of coarse samples that a fine one reads on each side.
     #[must_use]
     pub fn halo(&self) -> usize {
@@ -71,6 +77,12 @@ impl Network {
         let rows = (4 * self.rows_in_memory() * self.weights.channels) as u64;
         let rows = rows.saturating_mul(width as u64);
         planes.saturating_add(rows)
+    }
+
+    /// What the network sees of the cell of the coarse heights: half the binary logarithm of the fine cell over 75 m.
+    pub(super) fn octave(&self, coarse: f64) -> f32 {
+        let [least, greatest] = self.weights.cells;
+        (0.5 * libm::log2((0.5 * coarse).clamp(least, greatest) / CELL)) as f32
     }
 
     fn rows_in_memory(&self) -> usize {
@@ -136,15 +148,14 @@ impl<'a> Layers<'a> {
         draw: &'a Draw,
         rivers: Option<&'a Rivers>,
     ) -> Result<Layers<'a>> {
-        let Weights { channels, layers, cells: [least, greatest], .. } = &network.weights;
+        let Weights { channels, layers, .. } = &network.weights;
         match (network.weights.rivers, rivers) {
             (true, None) => return Err(other_network("keeps rivers: use it in `hillslopes`")),
             (false, Some(_)) => return Err(other_network("reads no rivers: use it in `learned`")),
             _ => {}
         }
         let features = Features::of(coarse);
-        let fine = (0.5 * coarse.window().cell).clamp(*least, *greatest);
-        let octave = (0.5 * libm::log2(fine / CELL)) as f32;
+        let octave = network.octave(coarse.window().cell);
         let row = |layer: usize| {
             let values = if layer == 0 { weights::inputs(network.weights.rivers) } else { *channels };
             std::array::from_fn(|_| vec![0.0; (features.width - 2 * layer) * values])

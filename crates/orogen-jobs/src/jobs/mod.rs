@@ -1,5 +1,5 @@
 //! What is made of a world, as one job each: a map sheet, a rendered picture, blocks, frames of its erosion,
-//! statistics; and noises.
+//! statistics, a real place at a smaller cell; and noises.
 //!
 //! Prepare a recipe with a job, open its world, then write to a file. Layers and packages for game engines have jobs of
 //! their own in [`export`](crate::export), maps of tiles in [`tilemap`](crate::tilemap), and fits to real places in
@@ -31,6 +31,8 @@ pub mod mesh_tiles;
 mod minecraft;
 #[doc(hidden)]
 pub mod noise;
+#[doc(hidden)]
+pub mod refine;
 #[doc(hidden)]
 pub mod render;
 mod render_options;

@@ -5,7 +5,7 @@ use crate::lower::{Lowering, Passes};
 use crate::op::{Context, Filter, GridInputs, WorldParams, only_layer};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
-use orogen_grid::learned::{Drained, Draw, Network};
+use orogen_grid::learned::{Drained, Draw, MAX_NOISE, Network};
 
 /// Approximate time for a sample, in nanoseconds.
 const COST: f64 = 500.0;
@@ -39,7 +39,7 @@ op! {
         /// Drainage area, in samples, from which beds are kept.
         rivers: u32 = 64, range 8 to 256;
         /// How much of the land is chance: 0 is the most likely land, 1 looks like real land.
-        noise: f64 = 1.0, range 0.0 to 2.0;
+        noise: f64 = 1.0, range 0.0 to MAX_NOISE;
         /// Path of a file with another network, made by the scripts in `training/`. A relative path is resolved against
         /// the folder of the recipe. Default: the network that is part of Orogen.
         weights: NetworkFile = NetworkFile::default();

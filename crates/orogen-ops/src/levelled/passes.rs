@@ -12,7 +12,13 @@ use orogen_grid::multiscale::schedule::{LevelPass, Schedule};
 /// The text of a shader file, preceded by the files that it needs.
 macro_rules! code {
     ($($file:literal),+) => {
-        concat!(include_str!("../lower/power.wgsl"), include_str!("../lower/product.wgsl"), include_str!("passes/common.wgsl"), $(include_str!(concat!("passes/", $file))),+)
+        concat!(
+            include_str!("../lower/power.wgsl"),
+            include_str!("../lower/product.wgsl"),
+            include_str!("../lower/hash.wgsl"),
+            include_str!("passes/common.wgsl"),
+            $(include_str!(concat!("passes/", $file))),+
+        )
     };
 }
 pub(super) use code;

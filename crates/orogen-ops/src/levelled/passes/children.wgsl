@@ -21,9 +21,7 @@ fn place(base: u32, at: vec2<i32>) {
 
 // A nearly normally distributed number from hashed bits.
 fn normal(base: u32, at: vec2<i32>, change: u32) -> f32 {
-    let bits = mix64(child_bits(place_hash(base), at) ^ vec2<u32>(change, 0u));
-    let sum = (bits.x & 0xffffu) + (bits.x >> 16u) + (bits.y & 0xffffu) + (bits.y >> 16u);
-    return (f32(sum) * 1.52587890625e-5 - 2.0) * 1.7320508;
+    return normal_number(mix64(child_bits(place_hash(base), at) ^ vec2<u32>(change, 0u)));
 }
 
 // A plane of the level above at the four nearest parents: the nearest, the two next to it, and the one across the
