@@ -1,5 +1,6 @@
 //! `cargo xtask bench`: measures all published figures.
 
+mod critic;
 mod peers;
 mod realism;
 mod refine;
@@ -15,6 +16,7 @@ pub const ABOUT: &str = "compare with other libraries and the machine's limits; 
 pub const HELP: &str = "
 Usage: cargo xtask bench [AREA] [--json FILE] [--case TEXT] [--quick]
        cargo xtask bench realism [--peers] [--half HALF] [--first SEED] [--case TEXT]
+       cargo xtask bench critic --dems DIR --control DIR [--first SEED]
        cargo xtask bench refine --dems DIR [--factor N]
        cargo xtask bench coasts SOURCE... [--seed N] [--cell M] [--window X,Y,W,H]
        cargo xtask bench valleys SOURCE... [--seed N] [--cell M] [--window X,Y,W,H]
@@ -59,6 +61,13 @@ them with the original: errors of heights, rivers, depressions, realism.
 
   --dems DIR      the real places, GeoTIFFs of 30 to 90 m
   --factor N      averages to 2, 4 or 8 times the cell [default: 4]
+
+Area critic, only if it is named: trains a small network to tell presets from real places, and prints how often it can (AUC; PyTorch is installed with pip;
+OROGEN_TRAINING names a Python that has it): docs/realism.md.
+
+  --dems DIR      the real places, GeoTIFFs of 30 to 90 m
+  --control DIR   other real places, which nobody could tell from the first
+  --first SEED    the first of six seeds [default: 1]
 
 Area coasts, only if it is named: measures continents: the share of land, the dimension of the coast by counted boxes of 2 and 16 cells, islands below 1000
 cells, the share of the sea at distances from the coast that is shallower than 200 m, and the heights of the land.
@@ -111,6 +120,9 @@ const REALISM: &str = "realism";
 /// An area that needs files that are not part of the project, so it is measured only if it is named.
 const REFINE: &str = "refine";
 
+/// Another such area.
+const CRITIC: &str = "critic";
+
 /// Areas that measure recipes, so they run only if they are named.
 const WATER: &str = "water";
 const VALLEYS: &str = "valleys";
@@ -125,8 +137,10 @@ struct Options {
     passed: Vec<String>,
     /// Options of area `realism`.
     realism: realism::Options,
-    /// The real places of area `refine`.
+    /// The real places of areas `refine` and `critic`.
     dems: Option<PathBuf>,
+    /// The other real places of area `critic`.
+    control: Option<PathBuf>,
     /// Its coarse cell over the fine one.
     factor: Option<String>,
 }
@@ -154,6 +168,11 @@ pub fn run(args: &[String]) -> Result {
         }
         if area == REFINE {
             refine::run(options.dems.as_deref(), options.factor.as_deref().unwrap_or("4"), &program)?;
+            continue;
+        }
+        if area == CRITIC {
+            let folders = critic::Options { dems: options.dems.clone(), control: options.control.clone() };
+            critic::run(&folders, options.realism.first.unwrap_or(1), &program)?;
             continue;
         }
         let features = if area == GPU { "peers,gpu" } else { "peers" };
@@ -190,6 +209,7 @@ fn parse(args: &[String]) -> Result<Options> {
             }
             "--half" => options.realism.half = Some(realism::Half::parse(&value()?)?),
             "--dems" => options.dems = Some(value()?.into()),
+            "--control" => options.control = Some(value()?.into()),
             "--factor" => options.factor = Some(value()?),
             "--peers" => options.realism.peers = true,
             "--first" => {
@@ -198,13 +218,15 @@ fn parse(args: &[String]) -> Result<Options> {
                 options.realism.first = Some(seed);
             }
             "--quick" => options.passed.push(arg.clone()),
-            area if (AREAS.contains(&area) || [REALISM, REFINE, GPU].contains(&area)) && options.area.is_none() => {
+            area if (AREAS.contains(&area) || [REALISM, REFINE, CRITIC, GPU].contains(&area))
+                && options.area.is_none() =>
+            {
                 options.area = Some(area.to_owned())
             }
             flag if flag.starts_with('-') => return Err(Failure::usage(format!("there is no option '{flag}'"))),
             other => {
                 return Err(Failure::usage(format!(
-                    "there is no area '{other}'; there are: {}, {COASTS}, {FANS}, {REALISM}, {REFINE}, {VALLEYS}, {WATER}",
+                    "there is no area '{other}'; there are: {}, {COASTS}, {CRITIC}, {FANS}, {REALISM}, {REFINE}, {VALLEYS}, {WATER}",
                     AREAS.join(", ")
                 )));
             }

@@ -1,7 +1,7 @@
 //! The land between rivers, made new by a network that keeps the rivers.
 
 use super::network::{Draw, Layers, Network, nodes_of};
-use super::rivers::{GAP, Rivers};
+use super::rivers::{Drained, GAP, Rivers};
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::hydrology::direction::{NONE, opposite, strides};
@@ -10,19 +10,6 @@ use crate::progress::Progress;
 
 /// Minimum fall from a sample to its receiver, as a share of the cell.
 const FALL: f64 = 3e-4;
-/// Land with rivers. All grids have the same window.
-#[derive(Debug, Clone, Copy)]
-pub struct Drained<'a> {
-    /// Height in metres.
-    pub height: &'a Grid,
-    /// Drainage area in m².
-    pub flow: &'a Grid,
-    /// Flow direction, clockwise from east (0) to north-east (7); others where there is none.
-    pub receiver: &'a Grid,
-    /// Above 0 in lakes.
-    pub lake: Option<&'a Grid>,
-}
-
 impl Network {
     /// Number of samples that [`Network::hillslopes`] reads on each side.
     #[must_use]

@@ -10,6 +10,7 @@
 //! rivers; `rivers` is what the network sees of these. The directory `training/` of the repository makes the weights.
 
 mod convolution;
+mod cubic;
 mod features;
 mod hillslopes;
 mod lowered;
@@ -22,6 +23,6 @@ mod weights;
 /// Maximum factor of the noise of a draw.
 pub const MAX_NOISE: f64 = 2.0;
 
-pub use hillslopes::Drained;
 pub use lowered::Words;
 pub use network::{Draw, Network};
+pub use rivers::Drained;

@@ -1,6 +1,7 @@
 //! Fine heights from coarse ones, row by row.
 
 use super::convolution::Row;
+use super::cubic::interpolated;
 use super::features::{self, Features};
 use super::rivers::Rivers;
 use super::weights::{self, FEATURES, NOISES, PHASES, Weights};
@@ -247,18 +248,6 @@ impl<'a> Layers<'a> {
     }
 }
 
-/// Cubic interpolation of coarse heights at a column and a row, and half a cell further where `east` or `south` is 1.
-pub fn interpolated(coarse: &Grid, [column, row]: [usize; 2], [east, south]: [usize; 2]) -> f32 {
-    let along = |row: usize| {
-        let row = &coarse.row(row)[column - 1..column + 3];
-        cubic([row[0], row[1], row[2], row[3]], east)
-    };
-    match south {
-        0 => along(row),
-        _ => cubic([row - 1, row, row + 1, row + 2].map(along), 1),
-    }
-}
-
 fn other_network(what: &str) -> Error {
     Error::new(ErrorKind::Recipe, format!("the network of `weights` {what}"))
 }
@@ -266,9 +255,4 @@ fn other_network(what: &str) -> Error {
 /// The first of two values, or their mean.
 fn between(first: f32, second: f32, phase: usize) -> f32 {
     if phase == 0 { first } else { (first + second) * 0.5 }
-}
-
-/// The second of four values, or the interpolating cubic in the middle.
-fn cubic([a, b, c, d]: [f32; 4], phase: usize) -> f32 {
-    if phase == 0 { b } else { (b + c) * 0.5 + ((b - a) + (c - d)) * 0.0625 }
 }

@@ -1,14 +1,26 @@
 //! What a network sees of rivers that are known.
 
+use super::cubic::interpolated;
 use super::features::{Features, REACH};
-use super::hillslopes::Drained;
-use super::network::interpolated;
 use super::weights::{OF_RIVERS, PHASES};
 use crate::grid::{Grid, Window};
 use crate::hydrology::direction::strides;
 
 /// The binary logarithm of the largest drainage area, in samples, that a network tells from larger ones.
 const LARGEST: f32 = 10.0;
+
+/// Land with rivers. All grids have the same window.
+#[derive(Debug, Clone, Copy)]
+pub struct Drained<'a> {
+    /// Height in metres.
+    pub height: &'a Grid,
+    /// Drainage area in m².
+    pub flow: &'a Grid,
+    /// Flow direction, clockwise from east (0) to north-east (7); others where there is none.
+    pub receiver: &'a Grid,
+    /// Above 0 in lakes.
+    pub lake: Option<&'a Grid>,
+}
 
 /// Rivers of fine samples: their beds and drainage areas.
 pub struct Rivers {

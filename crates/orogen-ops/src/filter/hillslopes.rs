@@ -75,7 +75,7 @@ impl Filter for Hillslopes {
     }
 
     fn lower(&self, _: f64, _: &WorldParams) -> Lowering<Passes> {
-        Lowering::Processor("a network sums in the order of the processor")
+        Lowering::Processor("samples are raised above their receivers one after the other")
     }
 
     fn cost(&self, _: f64) -> f64 {
