@@ -3,8 +3,8 @@
 import numpy as np
 import torch
 
-from network import NOISES
-from train import CELL
+from network import NOISES, Rivers
+from train import CELL, filtered
 
 MASK = (1 << 64) - 1
 STEP = 0x9E3779B97F4A7C15
@@ -52,3 +52,22 @@ def finer(network, cells, heights, cell, noise, seed, level=1, at=(0, 0)):
     with torch.no_grad():
         residual, scale, smooth = network(z, octave, draw)
     return (smooth + residual * scale * 0.5)[0, 0].numpy().astype(np.float64) * cell + mean
+
+
+def hillslopes(network, cells, heights, areas, least, cell, noise, seed):
+    """The land between rivers from the samples of coarse node `halo`, and where beds are kept. `areas` are drainage areas
+    in samples, and beds are kept from `least` on; the first sample is at an even column and row. Samples that are lower
+    than their receiver are as the network makes them."""
+    mean = heights.mean()
+    fine = torch.from_numpy(((heights - mean) / (2 * cell)).astype(np.float32))[None, None]
+    coarse = filtered(fine, 0.25)[..., ::2, ::2]
+    octave = torch.full((1, 1, 1, 1), 0.5 * float(np.log2(min(max(cell, cells[0]), cells[1]) / CELL)))
+    logarithms = torch.from_numpy(np.log2(areas).astype(np.float32))[None, None]
+    rivers = Rivers(fine, logarithms, float(np.log2(least)))
+    draw = noise * noise_at(seed, 1, 0, 0, coarse.shape[-1], coarse.shape[-2])
+    with torch.no_grad():
+        residual, scale, smooth = network(coarse, octave, draw, rivers)
+    made = (smooth + residual * scale * 0.5)[0, 0].numpy().astype(np.float64) * 2 * cell + mean
+    border = 2 * network.halo
+    kept = rivers.is_known[0, 0, border : border + made.shape[0], border : border + made.shape[1]].numpy()
+    return made, kept

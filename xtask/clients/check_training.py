@@ -50,6 +50,30 @@ weights = "{weights}"
 height = "fine"
 """
 
+HILLSLOPES = """orogen = 1
+[world]
+seed = 3
+size = [{columns}, {rows}]
+cell = 90
+[nodes.place]
+op = "dem"
+path = "drained.tif"
+[nodes.water]
+op = "drainage"
+source = "place"
+[nodes.slopes]
+op = "hillslopes"
+source = "place"
+flow = "water.flow"
+receiver = "water.receiver"
+rivers = {rivers}
+seed = 2
+weights = "{weights}"
+[outputs]
+height = "slopes"
+flow = "water.flow"
+"""
+
 # Land of orogen with depressions, in place of real land.
 orogen("export", "alpine", "--cell", "90", "--window", "0,0,260,240", "-o", WORK / "alpine.npy", "-q", "--force")
 land = numpy.load(WORK / "alpine.npy").astype(numpy.float64)
@@ -65,8 +89,14 @@ def pits(heights):
 
 checks.that("breaching leaves no depression", pits(drained) == 0 < pits(land), (pits(land), pits(drained)))
 windows = prepare.windows_of(drained, 90.0, 40, numpy.random.default_rng(0))
-checks.that("windows of the land", len(windows) == 40 and windows[0].shape == (prepare.SIDE, prepare.SIDE), len(windows))
-numpy.savez(WORK / "windows.npz", windows=numpy.array(windows, numpy.float32), cells=numpy.full(len(windows), 90, numpy.float32))
+checks.that("windows of the land", len(windows) == 40 and drained[windows[0]].shape == (prepare.SIDE, prepare.SIDE), len(windows))
+areas = prepare.drainage_areas(drained)
+arrays = {
+    "windows": numpy.array([(drained[here] - drained[here].mean()) / 90 for here in windows], numpy.float32),
+    "areas": numpy.array([areas[here] for here in windows], numpy.float16),
+    "cells": numpy.full(len(windows), 90, numpy.float32),
+}
+numpy.savez(WORK / "windows.npz", **arrays)
 
 lines = []
 prepared = train.Windows(WORK / "windows.npz")
@@ -95,4 +125,32 @@ for weights in (WORK / "trained.network", built_in):
         checks.that(f"{weights.name}, noise {noise}: PyTorch makes the same heights", made.shape == want.shape and off < 0.02, off)
         smooth = numpy.abs(made[::2, ::2] - heights[halo:-halo, halo:-halo]).mean()
         checks.that(f"{weights.name}, noise {noise}: detail is added", smooth > 0.01, smooth)
+
+# Between rivers: the same land, with the drainage of orogen.
+rows, columns = (side // 2 * 2 for side in drained.shape)
+land = drained[:rows, :columns].astype(numpy.float32)
+with rasterio.open(
+    WORK / "drained.tif", "w", driver="GTiff", width=columns, height=rows, count=1, dtype="float32", crs="EPSG:32632",
+    transform=from_origin(0, 0, 90, 90),
+) as file:
+    file.write(land, 1)
+network = train.trained(train.Windows(WORK / "windows.npz", rivers=True), 10, lines.append)
+write_network(WORK / "rivers.network", network, prepared.cells, ["land of orogen"])
+LEAST = 32
+for weights in (WORK / "rivers.network", ROOT / "crates/orogen-grid/src/learned/rivers.network"):
+    network, cells = read_network(weights)
+    recipe = WORK / "hillslopes.toml"
+    recipe.write_text(HILLSLOPES.format(columns=90 * columns, rows=90 * rows, rivers=LEAST, weights=weights))
+    layers = {}
+    for layer in ("height", "flow"):
+        orogen("export", recipe, "--layer", layer, "-o", WORK / "layer.npy", "-q", "--no-cache", "--force")
+        layers[layer] = numpy.load(WORK / "layer.npy").astype(numpy.float64)
+    want, kept = draw.hillslopes(network, cells, land.astype(numpy.float64), layers["flow"] / 8100, LEAST, 90.0, 1.0, draw.seed_of(3, 2))
+    border = 2 * network.halo
+    made = layers["height"][border : border + want.shape[0], border : border + want.shape[1]]
+    beds = land[border : border + want.shape[0], border : border + want.shape[1]]
+    checks.that(f"{weights.name}: beds are kept", (made[kept] == beds[kept]).all() and kept.mean() > 0.02, kept.mean())
+    off = (made - want)[~kept]
+    same = (numpy.abs(off) < 0.02).mean()
+    checks.that(f"{weights.name}: PyTorch makes the same slopes, except those that are raised", same > 0.9 and off.min() > -0.02, (same, off.min()))
 checks.end()
