@@ -105,7 +105,7 @@ def curvature_skewness(heights, scale):
 
 
 def measure(heights, cell):
-    """The features of a window of heights in meters, with its mean slope in degrees and its grid bias."""
+    """The features of a window of heights in metres, with its mean slope in degrees and its grid bias."""
     heights = np.ascontiguousarray(heights, float)
     smooth = ndimage.gaussian_filter(heights, 0.7)
     found = {

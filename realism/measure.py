@@ -31,7 +31,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("rasters", nargs="+", type=Path, metavar="FILE")
     parser.add_argument("--type", required=True, help="the type of land: one of real.json, or a new one")
-    parser.add_argument("--cell", type=float, help="cell in meters of files of NumPy")
+    parser.add_argument("--cell", type=float, help="cell in metres of files of NumPy")
     options = parser.parse_args()
     hilly = rasters.MOUNTAINS if options.type == real.MOUNTAINS else rasters.GENTLE
     random = np.random.default_rng(1)

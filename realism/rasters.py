@@ -36,10 +36,10 @@ class Windows:
 
 
 def read(path: Path, cell: float | None):
-    """The heights of a raster, NaN where there are none, and its cell in meters."""
+    """The heights of a raster, NaN where there are none, and its cell in metres."""
     if path.suffix == ".npy":
         if cell is None:
-            sys.exit(f"{path}: a file of NumPy has no cell; give --cell METERS")
+            sys.exit(f"{path}: a file of NumPy has no cell; give --cell METRES")
         return np.load(path).astype(float), cell
     import rasterio
 

@@ -30,7 +30,7 @@ from score import measured, standing_out
 BORDER = 24
 # Drainage area of a river, in samples.
 RIVER = 1100
-# The position of the first sample of a place, in meters.
+# The position of the first sample of a place, in metres.
 WEST, NORTH = 500_000.0, 5_000_000.0
 # Types of land that the originals are like.
 TYPES = ("mountains", "alpine", "rolling_hills", "volcanoes")

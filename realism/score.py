@@ -5,7 +5,7 @@
     score.py FILES.tif --type rolling_hills         beside land of another type of real.json
     score.py FILES.npy --cell 60 --half first       beside every second region of the type
 
-Files are GeoTIFFs with square cells of about 30 to 90 m and heights in meters, or arrays of NumPy.
+Files are GeoTIFFs with square cells of about 30 to 90 m and heights in metres, or arrays of NumPy.
 All windows of 256 x 256 samples that are hilly enough are judged, after their heights were multiplied such that the
 mean slope is the median of the real windows: steepness alone decides nothing.
 
@@ -104,7 +104,7 @@ def main():
     parser.add_argument("rasters", nargs="+", type=Path, metavar="FILE")
     parser.add_argument("--type", default=real.MOUNTAINS, help="the type of land, as in real.json [default: mountains]")
     parser.add_argument("--half", choices=("first", "second"), help="beside every second region of the type, by name")
-    parser.add_argument("--cell", type=float, help="cell in meters of files of NumPy")
+    parser.add_argument("--cell", type=float, help="cell in metres of files of NumPy")
     parser.add_argument("--real", type=Path, default=real.REAL, help="another file of real windows")
     parser.add_argument("--json", action="store_true", help="print the figures as JSON")
     options = parser.parse_args()

@@ -12,7 +12,7 @@ import numpy
 
 SIDE, BORDER, CELL = 512, 64, 60.0
 STEPS, STEP = 100, 100_000.0
-# Heights are proportional to the uplift, in meters per year.
+# Heights are proportional to the uplift, in metres per year.
 UPLIFT, ERODIBILITY, CREEP = 0.25e-3, 6e-6, 0.02
 
 parser = argparse.ArgumentParser()
